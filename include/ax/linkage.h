@@ -1,0 +1,25 @@
+// The linkage: rigid triangles joined at shared corners in the trihexagonal (kagome) pattern. Connectivity only.
+#pragma once
+
+#include "ax/base.h"
+
+typedef struct ax_linkage {
+    int triangle_count, hinge_count;
+    int (*triangles)[3]; // hinges, counter-clockwise in the flat state
+    // Stable panel identity: the triangle's place in the lattice, (column, row, 0 up / 1 down). It does not change when the
+    // design is solved again or its rim is edited.
+    int (*panels)[3];
+    // Holes are closed loops of hinges, counter-clockwise in the flat state; openings are the partial holes on the rim,
+    // in order, first and last hinge on the rim. CSR: loop k is hinges[start[k] .. start[k + 1]).
+    int hole_count, opening_count;
+    int *hole_start, *hole_hinges;
+    int *opening_start, *opening_hinges;
+    unsigned char* on_rim; // per hinge: 1 where only one triangle holds it
+} ax_linkage;
+
+void ax_linkage_free(ax_linkage* linkage);
+ax_linkage ax_linkage_copy(const ax_linkage* linkage);
+
+// Short name of a panel for people, e.g. "C14" (row letters, then the place within the row); stable like the panel itself.
+// `text` holds at least 16 characters.
+void ax_panel_name(const ax_linkage* linkage, int triangle, char text[16]);

@@ -1,0 +1,42 @@
+// Triangle meshes: reading them from files, and what is wrong with them.
+#pragma once
+
+#include "ax/base.h"
+
+// A triangle mesh in the file's own coordinates. `faces` index `positions` from 0. Owned arrays, freed by ax_mesh_free.
+typedef struct ax_mesh {
+    int vertex_count, face_count;
+    double (*positions)[3];
+    int (*faces)[3];
+} ax_mesh;
+
+void ax_mesh_free(ax_mesh* mesh); // also resets to an empty mesh; NULL allowed
+ax_mesh ax_mesh_copy(const ax_mesh* mesh);
+
+// What was mended while reading, each a count; none of these is an error by itself.
+typedef struct ax_mesh_repairs {
+    int welded_vertices;  // vertices closer than 1e-7 of the diagonal, merged
+    int degenerate_faces; // faces without area, dropped
+    int duplicate_faces;  // the same three vertices again, dropped
+    int unused_vertices;  // in no face, dropped
+    int flipped_faces;    // turned to agree with their neighbours
+    bool turned_outward;  // all faces turned, so that normals point to the side on which the surface bulges
+} ax_mesh_repairs;
+
+// Limits for the separate process in which files are parsed.
+typedef struct ax_read_limits {
+    double seconds; // wall time, > 0
+    size_t bytes;   // memory, > 0
+} ax_read_limits;
+ax_read_limits ax_read_limits_default(void); // 120 s, 6 GiB
+
+// Reads a surface that can become a linkage: OBJ, STL, PLY, OFF and whatever else the importer knows, chosen by content and
+// ending. Welds, drops what has no area, orients, and validates: one part, manifold, orientable, one boundary loop.
+// AX_BAD_INPUT names the fault and its place (vertex, face or edge with coordinates) and how to mend it;
+// AX_CANNOT_REALISE names a sound mesh of a kind that is not handled (several boundary loops).
+// `repairs` may be NULL. On failure `mesh` is empty.
+ax_status ax_mesh_read(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_mesh_repairs* repairs,
+                       ax_error* error);
+
+// The same from arrays in memory, for meshes that a program makes: welds, drops, orients, validates in place.
+ax_status ax_mesh_make_surface(ax_mesh* mesh, ax_mesh_repairs* repairs, ax_error* error);

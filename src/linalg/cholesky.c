@@ -1,0 +1,153 @@
+#include "linalg/cholesky.h"
+
+#include <assert.h>
+#include <cholmod.h>
+#include <dlfcn.h>
+#include <string.h>
+
+struct ax_cholesky {
+    cholmod_common common;
+    cholmod_factor* factor;
+    cholmod_dense *y, *e, *x; // workspace kept between solves
+    double (*permuted)[3];
+    ax_factor_kind kind;
+    ax_cholesky_counters counters;
+};
+
+// Results must not depend on the number of cores, so whichever BLAS is linked is told to use one thread.
+static void hold_blas_to_one_thread(void)
+{
+    static bool done;
+    if (done)
+        return;
+    done = true;
+    static const char* const names[] = {"openblas_set_num_threads", "bli_thread_set_num_threads"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+        void* symbol = dlsym(RTLD_DEFAULT, names[k]);
+        void (*set)(int);
+        memcpy(&set, &symbol, sizeof set);
+        if (symbol)
+            set(1);
+    }
+}
+
+static cholmod_sparse view(const ax_sparse* matrix)
+{
+    return (cholmod_sparse){.nrow = (size_t)matrix->n,
+                            .ncol = (size_t)matrix->n,
+                            .nzmax = (size_t)matrix->start[matrix->n],
+                            .p = matrix->start,
+                            .i = matrix->row,
+                            .x = matrix->value,
+                            .stype = -1,
+                            .itype = CHOLMOD_INT,
+                            .xtype = CHOLMOD_REAL,
+                            .dtype = CHOLMOD_DOUBLE,
+                            .sorted = 1,
+                            .packed = 1};
+}
+
+ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind)
+{
+    hold_blas_to_one_thread();
+    ax_cholesky* factor = AX_NEW0(ax_cholesky, 1);
+    cholmod_common* common = &factor->common;
+    cholmod_start(common);
+    common->print = 0;
+    common->try_catch = 1;
+    common->quick_return_if_not_posdef = 1;
+    common->final_ll = 1;
+    common->supernodal = kind == AX_FACTOR_SUPERNODAL ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
+    // nested dissection suits planar meshes; AMD is quicker to compute and as good on small ones
+    common->nmethods = 1;
+    common->method[0].ordering = matrix->n > 20000 ? CHOLMOD_METIS : CHOLMOD_AMD;
+    common->postorder = 1;
+    cholmod_sparse a = view(matrix);
+    factor->factor = cholmod_analyze(&a, common);
+    assert(factor->factor);
+    factor->kind = kind;
+    factor->counters.analyses = 1;
+    factor->permuted = ax_alloc((size_t)matrix->n, sizeof *factor->permuted);
+    return factor;
+}
+
+void ax_cholesky_free(ax_cholesky* factor)
+{
+    if (!factor)
+        return;
+    cholmod_common* common = &factor->common;
+    cholmod_free_factor(&factor->factor, common);
+    cholmod_free_dense(&factor->y, common);
+    cholmod_free_dense(&factor->e, common);
+    cholmod_free_dense(&factor->x, common);
+    cholmod_finish(common);
+    ax_free(factor->permuted);
+    ax_free(factor);
+}
+
+bool ax_cholesky_factor(ax_cholesky* factor, const ax_sparse* matrix)
+{
+    assert((size_t)matrix->n == factor->factor->n);
+    cholmod_sparse a = view(matrix);
+    cholmod_factorize(&a, factor->factor, &factor->common);
+    ++factor->counters.factorisations;
+    factor->counters.entries = factor->factor->is_super ? (double)factor->factor->xsize : (double)factor->factor->nzmax;
+    return factor->common.status == CHOLMOD_OK && factor->factor->minor == factor->factor->n;
+}
+
+void ax_cholesky_solve(ax_cholesky* factor, const double* b, double* x, int columns)
+{
+    size_t n = factor->factor->n;
+    cholmod_dense right = {.nrow = n,
+                           .ncol = (size_t)columns,
+                           .nzmax = n * (size_t)columns,
+                           .d = n,
+                           .x = (void*)b,
+                           .xtype = CHOLMOD_REAL,
+                           .dtype = CHOLMOD_DOUBLE};
+    cholmod_solve2(CHOLMOD_A, factor->factor, &right, NULL, &factor->x, NULL, &factor->y, &factor->e, &factor->common);
+    memcpy(x, factor->x->x, n * (size_t)columns * sizeof *x);
+    ++factor->counters.solves;
+}
+
+void ax_cholesky_solve3(ax_cholesky* factor, double (*x)[3])
+{
+    assert(factor->kind == AX_FACTOR_SIMPLICIAL && factor->factor->is_ll && !factor->factor->is_super);
+    int n = (int)factor->factor->n;
+    const int *start = factor->factor->p, *row = factor->factor->i, *count = factor->factor->nz;
+    const int* order = factor->factor->Perm;
+    const double* value = factor->factor->x;
+    double(*restrict y)[3] = factor->permuted;
+    for (int j = 0; j < n; ++j)
+        memcpy(y[j], x[order[j]], sizeof *y);
+
+    // L y = b, then L' x = y: each entry of the factor is read once for the three coordinates
+    for (int j = 0; j < n; ++j) {
+        int k = start[j], end = k + count[j];
+        double d = value[k], a = y[j][0] / d, b = y[j][1] / d, c = y[j][2] / d;
+        y[j][0] = a, y[j][1] = b, y[j][2] = c;
+        for (++k; k < end; ++k) {
+            double l = value[k];
+            double* to = y[row[k]];
+            to[0] -= l * a, to[1] -= l * b, to[2] -= l * c;
+        }
+    }
+    for (int j = n - 1; j >= 0; --j) {
+        int k = start[j], end = k + count[j];
+        double d = value[k], a = y[j][0], b = y[j][1], c = y[j][2];
+        for (++k; k < end; ++k) {
+            double l = value[k];
+            const double* from = y[row[k]];
+            a -= l * from[0], b -= l * from[1], c -= l * from[2];
+        }
+        y[j][0] = a / d, y[j][1] = b / d, y[j][2] = c / d;
+    }
+    for (int j = 0; j < n; ++j)
+        memcpy(x[order[j]], y[j], sizeof *y);
+    ++factor->counters.solves;
+}
+
+ax_cholesky_counters ax_cholesky_count(const ax_cholesky* factor)
+{
+    return factor->counters;
+}

@@ -1,0 +1,31 @@
+// Sparse Cholesky factorisation through CHOLMOD, as three separate steps: analyse once per pattern, factor once per set of
+// values, solve as often as wanted. BLAS is held to one thread, so results do not depend on the number of cores.
+#pragma once
+
+#include "linalg/sparse.h"
+
+typedef struct ax_cholesky ax_cholesky;
+
+typedef enum ax_factor_kind {
+    AX_FACTOR_SUPERNODAL, // dense blocks: best when factored often
+    AX_FACTOR_SIMPLICIAL, // columns: best for many solves with one factor
+} ax_factor_kind;
+
+// Orders and analyses the pattern of `matrix` (values are not read). Never fails on a sound pattern.
+ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind);
+void ax_cholesky_free(ax_cholesky* factor);
+
+// Numerical factorisation of a matrix with the analysed pattern. False if it is not positive definite.
+bool ax_cholesky_factor(ax_cholesky* factor, const ax_sparse* matrix);
+
+// x = A^-1 b for `columns` right-hand sides stored one after the other; x may be b.
+void ax_cholesky_solve(ax_cholesky* factor, const double* b, double* x, int columns);
+
+// x = A^-1 x for three interleaved right-hand sides (x, y, z per row) in one pass over a simplicial factor.
+void ax_cholesky_solve3(ax_cholesky* factor, double (*x)[3]);
+
+typedef struct ax_cholesky_counters {
+    int analyses, factorisations, solves;
+    double entries; // in the factor
+} ax_cholesky_counters;
+ax_cholesky_counters ax_cholesky_count(const ax_cholesky* factor);

@@ -1,0 +1,38 @@
+// Exact closest points on a mesh (bounding volume tree) and on polylines.
+#pragma once
+
+#include "ax/mesh.h"
+
+typedef struct ax_closest ax_closest;
+
+// Builds the tree; `mesh` must stay alive and unchanged. Interpolated vertex normals are used for `normal` below.
+ax_closest* ax_closest_make(const ax_mesh* mesh);
+void ax_closest_free(ax_closest* tree);
+
+typedef struct ax_closest_point {
+    int face;
+    double weight[3]; // barycentric
+    double point[3];
+    double normal[3]; // unit, interpolated from vertex normals
+    double distance;
+} ax_closest_point;
+
+// The closest point of the surface to x; `hint` is a face to start from (the previous answer) or -1. Thread safe.
+ax_closest_point ax_closest_find(const ax_closest* tree, const double x[3], int hint);
+
+// Closed polyline in 3D or in the plane (z = 0), with a tree over its segments.
+typedef struct ax_polyline ax_polyline;
+ax_polyline* ax_polyline_make(int count, const double (*points)[3]); // copies the points
+void ax_polyline_free(ax_polyline* line);
+
+typedef struct ax_polyline_point {
+    int segment;      // from point segment to segment + 1 (cyclic)
+    double parameter; // 0 to 1 on it
+    double point[3];
+    double tangent[3]; // unit, interpolated between the mean directions at the segment's ends
+    double distance;
+} ax_polyline_point;
+ax_polyline_point ax_polyline_find(const ax_polyline* line, const double x[3]);
+double ax_polyline_length(const ax_polyline* line);
+// Even-odd rule in the xy-plane, in logarithmic time on average.
+bool ax_polyline_contains(const ax_polyline* line, const double x[2]);
