@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The layer check finds what it is there to find."""
 import subprocess
 import sys

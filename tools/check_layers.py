@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Checks that includes point down. usage: check_layers.py [ROOT]
 
 src/layers.txt gives the order of the modules, src/CMakeLists.txt what each one depends on. A module may include its own

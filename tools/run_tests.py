@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Builds everything and runs every check and test; ./test calls it. Each step is a program that prints TAP, or one that
 counts as a single test by its exit code. The last line is always `N passed, N failed`."""
 import argparse
