@@ -33,7 +33,7 @@ typedef struct ax_progress {
 ax_status ax_fail(ax_error* error, ax_status status, const char* format, ...) __attribute__((format(printf, 3, 4)));
 
 // Reports progress; true when the work should go on. A NULL progress always goes on.
-bool ax_report(const ax_progress* progress, const char* stage, double fraction, double residual);
+bool ax_progress_report(const ax_progress* progress, const char* stage, double fraction, double residual);
 
 // A part of `progress`: fractions 0..1 of the part are mapped to lo..hi of the whole. `slot` must outlive the result.
 typedef struct ax_progress_part {

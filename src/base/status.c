@@ -15,7 +15,7 @@ ax_status ax_fail(ax_error* error, ax_status status, const char* format, ...)
     return status;
 }
 
-bool ax_report(const ax_progress* progress, const char* stage, double fraction, double residual)
+bool ax_progress_report(const ax_progress* progress, const char* stage, double fraction, double residual)
 {
     return !progress || !progress->report || progress->report(progress->context, stage, fraction, residual);
 }
@@ -23,7 +23,7 @@ bool ax_report(const ax_progress* progress, const char* stage, double fraction, 
 static bool report_part(void* context, const char* stage, double fraction, double residual)
 {
     const ax_progress_part* slot = context;
-    return ax_report(slot->whole, stage, slot->lo + (slot->hi - slot->lo) * fraction, residual);
+    return ax_progress_report(slot->whole, stage, slot->lo + (slot->hi - slot->lo) * fraction, residual);
 }
 
 const ax_progress* ax_progress_within(ax_progress_part* slot, const ax_progress* whole, double lo, double hi)

@@ -1,0 +1,328 @@
+#include "analysis/measure.h"
+
+#include "base/vec.h"
+#include "linkage/lattice.h"
+#include "mesh/geometry.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+double ax_measure_congruence(const ax_linkage* linkage, const double (*flat)[2], const double (*other)[3])
+{
+    double worst = 0;
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int k = 0; k < 3; ++k) {
+            int i = linkage->triangles[t][(k + 1) % 3], j = linkage->triangles[t][(k + 2) % 3];
+            worst = fmax(worst, fabs(ax_distance2(flat[i], flat[j]) / ax_distance3(other[i], other[j]) - 1));
+        }
+    return worst;
+}
+
+static bool is_border(const ax_linkage* linkage, int t)
+{
+    const int* corner = linkage->triangles[t];
+    return linkage->on_rim[corner[0]] || linkage->on_rim[corner[1]] || linkage->on_rim[corner[2]];
+}
+
+ax_edge_measure ax_measure_edges(const ax_linkage* linkage, const double (*flat)[2])
+{
+    ax_edge_measure m = {.min = INFINITY};
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double edge[3], mean = 0, unequal = 0;
+        for (int k = 0; k < 3; ++k) {
+            edge[k] = ax_distance2(flat[linkage->triangles[t][(k + 1) % 3]], flat[linkage->triangles[t][(k + 2) % 3]]);
+            mean += edge[k] / 3;
+        }
+        for (int k = 0; k < 3; ++k) {
+            unequal = fmax(unequal, fabs(edge[k] / mean - 1));
+            m.min = fmin(m.min, edge[k]), m.max = fmax(m.max, edge[k]);
+        }
+        double* worst = is_border(linkage, t) ? &m.equilateral_border : &m.equilateral_inner;
+        *worst = fmax(*worst, unequal);
+        m.mean += mean / linkage->triangle_count;
+    }
+    return m;
+}
+
+static int ascending(const void* a, const void* b)
+{
+    double x = *(const double*)a, y = *(const double*)b;
+    return (x > y) - (x < y);
+}
+
+// Value below which `share` of the values lie; sorts them.
+static double quantile(double* values, int count, double share)
+{
+    if (count == 0)
+        return NAN;
+    qsort(values, (size_t)count, sizeof *values, ascending);
+    return values[(int)fmin(count - 1, floor(share * count))];
+}
+
+ax_mouth_measure ax_measure_mouths(const ax_linkage* linkage, const double (*flat)[2])
+{
+    int count, n = linkage->hinge_count;
+    int(*mouth)[3] = ax_linkage_mouths(linkage, &count);
+    double* smallest = AX_NEW(double, n);
+    for (int h = 0; h < n; ++h)
+        smallest[h] = INFINITY;
+    for (int m = 0; m < count; ++m) {
+        double angle = ax_mouth_angle(flat[mouth[m][0]], flat[mouth[m][1]], flat[mouth[m][2]]);
+        smallest[mouth[m][1]] = fmin(smallest[mouth[m][1]], angle * 180 / AX_PI);
+    }
+    ax_mouth_measure m = {.min_deg = INFINITY, .min_hinge = -1};
+    int used = 0;
+    for (int h = 0; h < n; ++h) {
+        if (smallest[h] < m.min_deg)
+            m.min_deg = smallest[h], m.min_hinge = h;
+        if (isfinite(smallest[h]))
+            smallest[used++] = smallest[h];
+    }
+    m.median_deg = quantile(smallest, used, 0.5);
+    ax_free(mouth);
+    ax_free(smallest);
+    return m;
+}
+
+// Depth by which two triangles overlap: the least overlap of their shadows over the six edge normals; negative: apart.
+static double overlap_depth(const double a[3][2], const double b[3][2])
+{
+    double depth = INFINITY;
+    for (int side = 0; side < 6; ++side) {
+        const double(*of)[2] = side < 3 ? a : b;
+        int k = side % 3, next = (k + 1) % 3;
+        double n[2] = {of[k][1] - of[next][1], of[next][0] - of[k][0]}, length = hypot(n[0], n[1]);
+        double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
+        for (int c = 0; c < 3; ++c) {
+            double s[2] = {(a[c][0] * n[0] + a[c][1] * n[1]) / length, (b[c][0] * n[0] + b[c][1] * n[1]) / length};
+            for (int w = 0; w < 2; ++w)
+                lo[w] = fmin(lo[w], s[w]), hi[w] = fmax(hi[w], s[w]);
+        }
+        depth = fmin(depth, fmin(hi[0] - lo[1], hi[1] - lo[0]));
+    }
+    return depth;
+}
+
+int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], double depth, int first[2])
+{
+    int count = linkage->triangle_count, pairs = 0;
+    double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY}, cell = 0;
+    first[0] = first[1] = -1;
+    for (int t = 0; t < count; ++t)
+        for (int k = 0; k < 3; ++k) {
+            const double *a = flat[linkage->triangles[t][k]], *b = flat[linkage->triangles[t][(k + 1) % 3]];
+            cell = fmax(cell, ax_distance2(a, b));
+            for (int d = 0; d < 2; ++d)
+                lo[d] = fmin(lo[d], a[d]), hi[d] = fmax(hi[d], a[d]);
+        }
+    // cells as wide as the longest edge: overlapping triangles have centroids in the same or in touching cells, since a
+    // centroid is at most two thirds of a median from any point of its triangle
+    cell *= 1.2;
+    // no more cells than a few per triangle: one huge triangle only makes them coarser
+    cell = fmax(cell, sqrt((hi[0] - lo[0]) * (hi[1] - lo[1]) / (4.0 * count)));
+    int columns = (int)((hi[0] - lo[0]) / cell) + 1, rows = (int)((hi[1] - lo[1]) / cell) + 1;
+    int *start = AX_NEW0(int, columns*rows + 1), *place = AX_NEW(int, count), *sorted = AX_NEW(int, count);
+    for (int t = 0; t < count; ++t) {
+        double c[2] = {0, 0};
+        for (int k = 0; k < 3; ++k)
+            for (int d = 0; d < 2; ++d)
+                c[d] += flat[linkage->triangles[t][k]][d] / 3;
+        place[t] = (int)((c[1] - lo[1]) / cell) * columns + (int)((c[0] - lo[0]) / cell);
+        ++start[place[t] + 1];
+    }
+    for (int k = 0; k < columns * rows; ++k)
+        start[k + 1] += start[k];
+    int* fill = ax_copy(start, (size_t)(columns * rows), sizeof *fill);
+    for (int t = 0; t < count; ++t)
+        sorted[fill[place[t]]++] = t;
+    for (int t = 0; t < count; ++t) {
+        double a[3][2], b[3][2];
+        for (int k = 0; k < 3; ++k)
+            memcpy(a[k], flat[linkage->triangles[t][k]], sizeof a[k]);
+        int row = place[t] / columns, column = place[t] % columns;
+        for (int r = row > 0 ? row - 1 : 0; r <= row + 1 && r < rows; ++r)
+            for (int c = column > 0 ? column - 1 : 0; c <= column + 1 && c < columns; ++c)
+                for (int k = start[r * columns + c]; k < start[r * columns + c + 1]; ++k) {
+                    int other = sorted[k];
+                    if (other <= t)
+                        continue;
+                    for (int corner = 0; corner < 3; ++corner)
+                        memcpy(b[corner], flat[linkage->triangles[other][corner]], sizeof b[corner]);
+                    if (overlap_depth((const double(*)[2])a, (const double(*)[2])b) > depth && pairs++ == 0)
+                        first[0] = t, first[1] = other;
+                }
+    }
+    ax_free(start);
+    ax_free(fill);
+    ax_free(place);
+    ax_free(sorted);
+    return pairs;
+}
+
+int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2])
+{
+    int flipped = 0;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        const int* corner = linkage->triangles[t];
+        flipped += !(ax_orient2(flat[corner[0]], flat[corner[1]], flat[corner[2]]) > 0);
+    }
+    return flipped;
+}
+
+void ax_measure_scale(const ax_linkage* linkage, const double (*flat)[2], double* scale)
+{
+    int count = linkage->triangle_count;
+    int(*owners)[2] = ax_linkage_hinge_triangles(linkage);
+    double(*centre)[2] = ax_calloc((size_t)count, sizeof *centre), *spacing = AX_NEW0(double, count), mean = 0;
+    int inner = 0;
+    for (int t = 0; t < count; ++t)
+        for (int k = 0; k < 3; ++k)
+            for (int d = 0; d < 2; ++d)
+                centre[t][d] += flat[linkage->triangles[t][k]][d] / 3;
+    for (int t = 0; t < count; ++t) {
+        if (is_border(linkage, t))
+            continue;
+        int near[3];
+        for (int k = 0; k < 3; ++k) {
+            const int* owner = owners[linkage->triangles[t][k]];
+            near[k] = owner[0] == t ? owner[1] : owner[0];
+        }
+        spacing[t] = sqrt(2 * fabs(ax_orient2(centre[near[0]], centre[near[1]], centre[near[2]])) / sqrt(3));
+        mean += spacing[t];
+        ++inner;
+    }
+    mean = inner ? mean / inner : 0;
+    // border triangles: the mean of their neighbours' spacing, in rounds from the inside out
+    unsigned char* known = AX_NEW0(unsigned char, count);
+    for (int t = 0; t < count; ++t)
+        known[t] = spacing[t] > 0;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int t = 0; t < count; ++t) {
+            double sum = 0;
+            int terms = 0;
+            for (int k = 0; k < 3 && !known[t]; ++k)
+                for (int side = 0; side < 2; ++side) {
+                    int o = owners[linkage->triangles[t][k]][side];
+                    if (o >= 0 && known[o] == 1)
+                        sum += spacing[o], ++terms;
+                }
+            if (terms)
+                spacing[t] = sum / terms, known[t] = 2, changed = true;
+        }
+        for (int t = 0; t < count; ++t)
+            known[t] = known[t] ? 1 : 0;
+    }
+    for (int t = 0; t < count; ++t) {
+        double edge = 0;
+        for (int k = 0; k < 3; ++k)
+            edge += ax_distance2(flat[linkage->triangles[t][k]], flat[linkage->triangles[t][(k + 1) % 3]]) / 3;
+        double at = known[t] ? spacing[t] : mean;
+        scale[t] = at > 0 ? 2 * edge / at : NAN;
+    }
+    ax_free(owners);
+    ax_free(centre);
+    ax_free(spacing);
+    ax_free(known);
+}
+
+void ax_measure_hole_angles(const ax_linkage* linkage, const double (*places)[3], double out[3])
+{
+    int most = linkage->hole_start[linkage->hole_count], used = 0;
+    double* angle = AX_NEW(double, most);
+    for (int h = 0; h < linkage->hole_count; ++h) {
+        const int* loop = linkage->hole_hinges + linkage->hole_start[h];
+        int n = linkage->hole_start[h + 1] - linkage->hole_start[h];
+        for (int k = 0; n == 6 && k < n; ++k) {
+            double a[3], b[3], turn[3];
+            ax_sub3(places[loop[(k + n - 1) % n]], places[loop[k]], a);
+            ax_sub3(places[loop[(k + 1) % n]], places[loop[k]], b);
+            ax_cross(a, b, turn);
+            angle[used++] = atan2(ax_norm3(turn), ax_dot3(a, b)) * 180 / AX_PI;
+        }
+    }
+    const double share[3] = {0.05, 0.5, 0.95};
+    for (int k = 0; k < 3; ++k)
+        out[k] = quantile(angle, used, share[k]);
+    ax_free(angle);
+}
+
+// Force of the edges of one panel on its corner k: tension pulls the hinge into the panel.
+static void corner_force(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3], int t,
+                         int k, double out[3])
+{
+    const int* corner = linkage->triangles[t];
+    memset(out, 0, 3 * sizeof *out);
+    for (int o = 1; o <= 2; ++o) { // the edge to corner k + o lies opposite the remaining corner
+        double d[3], f = edge_forces[t][(k + 3 - o) % 3];
+        ax_sub3(places[corner[(k + o) % 3]], places[corner[k]], d);
+        double length = ax_norm3(d);
+        for (int c = 0; c < 3; ++c)
+            out[c] += f * d[c] / length;
+    }
+}
+
+// Load plus the pull of all edges at each hinge; zero at a free hinge in equilibrium. Owned by the caller.
+static double (*unbalanced(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
+                           const double (*loads)[3]))[3]
+{
+    double(*sum)[3] = ax_copy(loads, (size_t)linkage->hinge_count, sizeof *sum);
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int k = 0; k < 3; ++k) {
+            double f[3];
+            corner_force(linkage, places, edge_forces, t, k, f);
+            for (int c = 0; c < 3; ++c)
+                sum[linkage->triangles[t][k]][c] += f[c];
+        }
+    return sum;
+}
+
+double ax_measure_force_residual(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
+                                 const double (*loads)[3], const unsigned char* supports)
+{
+    double(*sum)[3] = unbalanced(linkage, places, edge_forces, loads), total = 0, left = 0;
+    for (int h = 0; h < linkage->hinge_count; ++h) {
+        total += ax_norm3(loads[h]);
+        if (!supports[h])
+            left += ax_dot3(sum[h], sum[h]);
+    }
+    ax_free(sum);
+    return sqrt(left) / total;
+}
+
+void ax_measure_hinge_forces(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
+                             const double (*loads)[3], const unsigned char* supports, double* hinge_max,
+                             double* reactions)
+{
+    *hinge_max = *reactions = 0;
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int k = 0; k < 3; ++k) {
+            double f[3];
+            corner_force(linkage, places, edge_forces, t, k, f);
+            *hinge_max = fmax(*hinge_max, ax_norm3(f));
+        }
+    double(*sum)[3] = unbalanced(linkage, places, edge_forces, loads);
+    for (int h = 0; h < linkage->hinge_count; ++h)
+        if (supports[h])
+            *reactions += ax_norm3(sum[h]);
+    ax_free(sum);
+}
+
+double ax_measure_cover(const ax_mesh* target, const ax_linkage* linkage, const double (*places)[3], double share)
+{
+    ax_mesh panels = {.vertex_count = linkage->hinge_count,
+                      .face_count = linkage->triangle_count,
+                      .positions = (double(*)[3])places,
+                      .faces = linkage->triangles};
+    ax_closest* tree = ax_closest_make(&panels);
+    double* distance = AX_NEW(double, target->vertex_count);
+    for (int v = 0, hint = -1; v < target->vertex_count; ++v) {
+        ax_closest_point at = ax_closest_find(tree, target->positions[v], hint);
+        distance[v] = at.distance;
+        hint = at.face;
+    }
+    double within = quantile(distance, target->vertex_count, share);
+    ax_free(distance);
+    ax_closest_free(tree);
+    return within;
+}

@@ -1,0 +1,44 @@
+// Measures of a linkage's states, from positions alone: nothing here knows how a state was made, so every figure of the report
+// checks the solvers.
+#pragma once
+
+#include "ax/linkage.h"
+#include "mesh/closest.h"
+
+// Largest |flat edge / other edge - 1| over all edges; `other` in space.
+double ax_measure_congruence(const ax_linkage* linkage, const double (*flat)[2], const double (*other)[3]);
+
+typedef struct ax_edge_measure {
+    double mean, min, max;                        // of flat edges
+    double equilateral_inner, equilateral_border; // largest |edge / mean of its triangle - 1|
+} ax_edge_measure;
+ax_edge_measure ax_measure_edges(const ax_linkage* linkage, const double (*flat)[2]);
+
+typedef struct ax_mouth_measure {
+    double min_deg, median_deg; // over hinges of two triangles: the smaller of the two signed gaps
+    int min_hinge;
+} ax_mouth_measure;
+ax_mouth_measure ax_measure_mouths(const ax_linkage* linkage, const double (*flat)[2]);
+
+// Pairs of flat triangles whose interiors overlap by more than `depth` (separating axes over a grid), and the first such pair.
+int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], double depth, int first[2]);
+int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2]);
+
+// Realised scale factor per triangle: twice its mean edge over the lattice spacing that its neighbours' centres show in the
+// flat state; border triangles take the spacing of their neighbours.
+void ax_measure_scale(const ax_linkage* linkage, const double (*flat)[2], double* scale);
+
+// 5 %, 50 % and 95 % quantiles of the interior angles of six-hinged holes in space, degrees.
+void ax_measure_hole_angles(const ax_linkage* linkage, const double (*places)[3], double quantile[3]);
+
+// |force| over the free hinges / total load, from places, edge forces (N, per triangle and edge) and hinge loads (N).
+double ax_measure_force_residual(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
+                                 const double (*loads)[3], const unsigned char* supports);
+
+// Largest force that a panel passes on at one hinge, and the sum of the reactions' magnitudes, N.
+void ax_measure_hinge_forces(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
+                             const double (*loads)[3], const unsigned char* supports, double* hinge_max,
+                             double* reactions);
+
+// Distance within which `share` (0..1) of the target's vertices lie from the linkage's panels.
+double ax_measure_cover(const ax_mesh* target, const ax_linkage* linkage, const double (*places)[3], double share);

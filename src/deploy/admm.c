@@ -1,0 +1,166 @@
+// min E(x) subject to |x_i - x_j| = l on every edge, split as d = z with z on the sphere of radius l (Overby et al. 2017, ADMM
+// contains projective dynamics). The penalty is scaled by the load: rho = 10 edge forces per edge length. In absolute units it
+// is the classic failure: at a hundred times that value the edges are right to 6e-8 and the forces stall at 5e-4 of the load.
+#include "deploy/admm.h"
+
+#include "base/vec.h"
+#include "linalg/cholesky.h"
+
+#include <string.h>
+
+static const double relaxation = 1.6;
+enum { CHECK = 20 };
+
+struct ax_admm {
+    const ax_deploy_model* model;
+    double rho;
+    double (*x)[3];
+    double (*z)[3], (*u)[3]; // per edge: the rigid edge vector and its scaled multiplier
+    double (*right)[3];      // per free hinge
+    double (*gradient)[3];
+    double* force;
+    ax_sparse laplacian;
+    ax_cholesky* factor;
+    int iterations;
+};
+
+ax_admm* ax_admm_make(const ax_deploy_model* m, const double (*x)[3])
+{
+    ax_admm* a = AX_NEW0(ax_admm, 1);
+    *a = (ax_admm){.model = m, .rho = (m->inflated ? 30 : 10) * m->tension};
+    a->x = ax_copy(x, (size_t)m->hinges, sizeof *a->x);
+    a->z = ax_alloc((size_t)m->edge_count, sizeof *a->z);
+    a->u = ax_calloc((size_t)m->edge_count, sizeof *a->u);
+    a->right = ax_alloc((size_t)m->unknowns, sizeof *a->right);
+    a->gradient = ax_alloc((size_t)m->hinges, sizeof *a->gradient);
+    a->force = AX_NEW0(double, m->edge_count);
+    ax_entries entries = {0};
+    for (int u = 0; u < m->unknowns; ++u)
+        ax_entries_add(&entries, u, u, 1e-9);
+    for (int e = 0; e < m->edge_count; ++e) {
+        int i = m->unknown[m->edge[e][0]], j = m->unknown[m->edge[e][1]];
+        if (i >= 0)
+            ax_entries_add(&entries, i, i, 1);
+        if (j >= 0)
+            ax_entries_add(&entries, j, j, 1);
+        if (i >= 0 && j >= 0)
+            ax_entries_add(&entries, i, j, -1);
+        double d[3], length;
+        ax_sub3(x[m->edge[e][0]], x[m->edge[e][1]], d);
+        length = ax_norm3(d);
+        for (int c = 0; c < 3; ++c) // coincident ends have no direction: +x is as good as any, and repeatable
+            a->z[e][c] = length > 0 ? m->length[e] / length * d[c] : (c == 0 ? m->length[e] : 0);
+    }
+    a->laplacian = ax_entries_sparse(&entries, m->unknowns);
+    a->factor = ax_cholesky_analyse(&a->laplacian, AX_FACTOR_SIMPLICIAL);
+    ax_cholesky_factor(a->factor, &a->laplacian);
+    return a;
+}
+
+void ax_admm_free(ax_admm* a)
+{
+    if (!a)
+        return;
+    void* blocks[] = {a->x, a->z, a->u, a->right, a->gradient, a->force};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+        ax_free(blocks[k]);
+    ax_sparse_free(&a->laplacian);
+    ax_cholesky_free(a->factor);
+    ax_free(a);
+}
+
+void ax_admm_set_forces(ax_admm* a, const double* force)
+{
+    for (int e = 0; e < a->model->edge_count; ++e)
+        for (int c = 0; c < 3; ++c)
+            a->u[e][c] = force[e] / a->rho * a->z[e][c] / a->model->length[e];
+}
+
+void ax_admm_forces(const ax_admm* a, double* force)
+{
+    const ax_deploy_model* m = a->model;
+    for (int e = 0; e < m->edge_count; ++e) {
+        double d[3];
+        ax_sub3(a->x[m->edge[e][0]], a->x[m->edge[e][1]], d);
+        force[e] = a->rho * ax_dot3(a->u[e], d) / fmax(ax_norm3(d), 1e-300);
+    }
+}
+
+static ax_residuals measure(ax_admm* a)
+{
+    const ax_deploy_model* m = a->model;
+    const double(*x)[3] = (const double(*)[3])a->x;
+    ax_admm_forces(a, a->force);
+    ax_deploy_energy(m, x, a->gradient);
+    ax_deploy_add_edge_forces(m, x, a->force, a->gradient);
+    double sum = 0;
+    for (int u = 0; u < m->unknowns; ++u)
+        sum += ax_dot3(a->gradient[m->hinge[u]], a->gradient[m->hinge[u]]);
+    return (ax_residuals){.edge = ax_deploy_edge_error(m, x), .force = sqrt(sum)};
+}
+
+static void iterate(ax_admm* a)
+{
+    const ax_deploy_model* m = a->model;
+    // the follower load is lagged by up to three iterations: it changes slowly and costs as much as the rest
+    if (a->iterations == 0 || (m->inflated && a->iterations % 3 == 0))
+        ax_deploy_energy(m, (const double(*)[3])a->x, a->gradient);
+    for (int u = 0; u < m->unknowns; ++u)
+        for (int c = 0; c < 3; ++c)
+            a->right[u][c] = -a->gradient[m->hinge[u]][c] / a->rho;
+    for (int e = 0; e < m->edge_count; ++e) {
+        int h[2] = {m->edge[e][0], m->edge[e][1]}, i = m->unknown[h[0]], j = m->unknown[h[1]];
+        for (int c = 0; c < 3; ++c) {
+            double y = a->z[e][c] - a->u[e][c];
+            if (i >= 0)
+                a->right[i][c] += y + (j < 0 ? a->x[h[1]][c] : 0);
+            if (j >= 0)
+                a->right[j][c] -= y - (i < 0 ? a->x[h[0]][c] : 0);
+        }
+    }
+    ax_cholesky_solve3(a->factor, a->right);
+    for (int u = 0; u < m->unknowns; ++u)
+        memcpy(a->x[m->hinge[u]], a->right[u], sizeof *a->right);
+    for (int e = 0; e < m->edge_count; ++e) {
+        const double *p = a->x[m->edge[e][0]], *q = a->x[m->edge[e][1]];
+        double y[3];
+        for (int c = 0; c < 3; ++c)
+            y[c] = relaxation * (p[c] - q[c]) + (1 - relaxation) * a->z[e][c] + a->u[e][c];
+        double norm = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]), s = m->length[e] / (norm > 0 ? norm : 1);
+        for (int c = 0; c < 3; ++c) {
+            a->z[e][c] = s * y[c];
+            a->u[e][c] = y[c] - a->z[e][c];
+        }
+    }
+    ++a->iterations;
+}
+
+bool ax_admm_run(ax_admm* a, double level, int iterations, const ax_progress* progress, ax_residuals* residuals)
+{
+    *residuals = measure(a);
+    if (!a->model->inflated)
+        ax_deploy_energy(a->model, (const double(*)[3])a->x, a->gradient);
+    for (int k = 1; k <= iterations; ++k) {
+        iterate(a);
+        if (k % CHECK && k < iterations)
+            continue;
+        *residuals = measure(a);
+        ax_deploy_energy(a->model, (const double(*)[3])a->x, a->gradient);
+        double worst = fmax(residuals->edge, residuals->force);
+        if (!ax_progress_report(progress, "Opening the linkage", (double)k / iterations, worst))
+            return false;
+        if (worst <= level)
+            break;
+    }
+    return true;
+}
+
+const double (*ax_admm_places(const ax_admm* a))[3]
+{
+    return (const double(*)[3])a->x;
+}
+
+int ax_admm_iterations(const ax_admm* a)
+{
+    return a->iterations;
+}

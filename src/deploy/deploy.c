@@ -1,0 +1,112 @@
+// The ladder from flat to exact: projective steps until the residuals are small, then Newton; where Newton fails, projective
+// steps go on from where they stood to a ten times smaller level and Newton tries again. Gravity that resists is reached
+// through inflation: the inflated state is near, and has all its edges in tension.
+#include "deploy/deploy.h"
+
+#include "base/vec.h"
+
+#include <string.h>
+
+enum { PROJECTIVE_STEPS = 6000, NEWTON_STEPS = 150 };
+
+typedef struct ladder {
+    const ax_deploy_model* model;
+    double (*x)[3];
+    double* force;
+    ax_newton* newton;
+    ax_deployment* result;
+} ladder;
+
+// One Newton run from the present places and forces; true when the end is exact and stable. `cancelled` is set on request.
+static bool finish(ladder* l, const ax_progress* progress, bool* cancelled)
+{
+    ax_newton_result r = ax_newton_run(l->newton, l->x, l->force, NEWTON_STEPS, progress);
+    l->result->newton_steps += r.steps;
+    l->result->factorisations += r.factorisations;
+    l->result->residuals = r.residuals;
+    l->result->energy = r.energy;
+    l->result->stable = r.stable;
+    l->result->exact = r.exact && r.stable;
+    *cancelled = r.cancelled;
+    return l->result->exact;
+}
+
+static bool climb(ladder* l, double first_level, double last_level, const ax_progress* progress, bool* cancelled)
+{
+    const ax_deploy_model* m = l->model;
+    size_t bytes = (size_t)m->hinges * sizeof *l->x;
+    ax_deploy_start(m, 0.01, l->x);
+    ax_admm* admm = ax_admm_make(m, (const double(*)[3])l->x);
+    bool done = false;
+    double lo = 0;
+    for (double level = first_level; level > last_level / 2 && !done && !*cancelled; level /= 10) {
+        ax_progress_part slot;
+        ax_residuals residuals;
+        double hi = lo + (1 - lo) / 2;
+        *cancelled = !ax_admm_run(admm, level, PROJECTIVE_STEPS, ax_progress_within(&slot, progress, lo, (lo + hi) / 2),
+                                  &residuals);
+        if (*cancelled)
+            break;
+        memcpy(l->x, ax_admm_places(admm), bytes);
+        ax_admm_forces(admm, l->force);
+        l->result->residuals = residuals;
+        if (fmax(residuals.edge, residuals.force) > 0.1)
+            break; // nowhere near: no level below will be reached either
+        done = finish(l, ax_progress_within(&slot, progress, (lo + hi) / 2, hi), cancelled);
+        lo = hi;
+    }
+    l->result->projective_steps += ax_admm_iterations(admm);
+    ax_admm_free(admm);
+    return done;
+}
+
+// Gravity by load swap: the same linkage inflated, then Newton under its own weight from there.
+static bool swap_load(ladder* l, const ax_progress* progress, bool* cancelled)
+{
+    ax_deploy_model inflated = *l->model;
+    double area = 0;
+    for (int p = 0; p < inflated.polygon_count; ++p) {
+        const int* loop = inflated.polygon + inflated.polygon_start[p];
+        if (inflated.polygon_start[p + 1] - inflated.polygon_start[p] != 3)
+            break; // panels come first
+        const double *a = inflated.rest[loop[0]], *b = inflated.rest[loop[1]], *c = inflated.rest[loop[2]];
+        area += fabs(ax_orient2(a, b, c)) / 2;
+    }
+    inflated.inflated = true;
+    inflated.pressure = 1 / (4 * area);
+
+    ladder other = *l;
+    ax_deployment aside = {0};
+    other.model = &inflated;
+    other.newton = ax_newton_make(&inflated);
+    other.result = &aside;
+    ax_progress_part slot;
+    bool open = climb(&other, 1e-3, 1e-5, ax_progress_within(&slot, progress, 0, 0.5), cancelled);
+    ax_newton_free(other.newton);
+    l->result->projective_steps += aside.projective_steps;
+    l->result->newton_steps += aside.newton_steps;
+    l->result->factorisations += aside.factorisations;
+    if (!open)
+        return false;
+    ax_newton_fit_forces(l->newton, (const double(*)[3])l->x, l->force);
+    return finish(l, ax_progress_within(&slot, progress, 0.5, 1), cancelled);
+}
+
+bool ax_deploy(const ax_deploy_model* model, double (*x)[3], double* force, const ax_progress* progress,
+               ax_deployment* result)
+{
+    *result = (ax_deployment){0};
+    ladder l = {.model = model, .x = x, .force = force, .newton = ax_newton_make(model), .result = result};
+    bool cancelled = false;
+    double first = model->hinges > 8000 ? 1e-4 : 1e-3;
+    ax_progress_part slot;
+    bool done = climb(&l, first, 1e-4, ax_progress_within(&slot, progress, 0, 0.4), &cancelled);
+    if (!done && !cancelled && !model->inflated)
+        done = swap_load(&l, ax_progress_within(&slot, progress, 0.4, 0.7), &cancelled);
+    if (!done && !cancelled)
+        done = climb(&l, 1e-5, 1e-6, ax_progress_within(&slot, progress, 0.7, 1), &cancelled);
+    for (int e = 0; e < model->edge_count; ++e)
+        result->force_over_tension = fmax(result->force_over_tension, fabs(force[e]) / model->tension);
+    ax_newton_free(l.newton);
+    return !cancelled;
+}

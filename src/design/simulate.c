@@ -1,0 +1,173 @@
+#include "ax/design.h"
+
+#include "base/clock.h"
+#include "base/vec.h"
+#include "deploy/deploy.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double standard_gravity = 9.80665; // m/s2
+
+static void clear_simulated(ax_design* design)
+{
+    ax_free(design->simulated);
+    ax_free(design->forces);
+    ax_free(design->edge_forces);
+    design->simulated = NULL;
+    design->forces = NULL;
+    design->edge_forces = NULL;
+}
+
+// Loads and edge forces in newton from the solution of load 1.
+static void keep_solution(ax_design* design, const ax_deploy_model* model, const double (*x)[3], const double* force,
+                          double newton)
+{
+    int n = design->linkage.hinge_count;
+    design->simulated = ax_alloc((size_t)n, sizeof *design->simulated);
+    design->forces = ax_alloc((size_t)n, sizeof *design->forces);
+    design->edge_forces = ax_calloc((size_t)design->linkage.triangle_count, sizeof *design->edge_forces);
+    ax_deploy_energy(model, x, design->forces);
+    for (int h = 0; h < n; ++h)
+        for (int c = 0; c < 3; ++c) {
+            design->simulated[h][c] = x[h][c] * model->unit + model->centre[c];
+            design->forces[h][c] *= -newton;
+        }
+    for (int h = 0; h < n; ++h)
+        if (design->supports[h]) // to the last bit where they are held
+            memcpy(design->simulated[h], design->deployed[h], sizeof design->simulated[h]);
+    for (int e = 0; e < model->edge_count; ++e)
+        design->edge_forces[model->edge_source[e] / 3][model->edge_source[e] % 3] = force[e] * newton;
+}
+
+ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_progress* progress, ax_error* error)
+{
+    clear_simulated(design);
+    design->load = *load;
+    if (load->kind == AX_LOAD_NONE) {
+        ax_design_measure(design);
+        return AX_OK;
+    }
+    int held = 0;
+    for (int h = 0; h < design->linkage.hinge_count; ++h)
+        held += design->supports[h];
+    if (held < 3)
+        return ax_fail(error, AX_USAGE, "%d hinges are supported; at least three are needed to hold the shell.", held);
+    bool gravity = load->kind == AX_LOAD_GRAVITY;
+    double metre = ax_unit_in_metres(design->unit), unit_load, start = ax_seconds();
+    ax_deploy_model model =
+        ax_deploy_model_make(&design->linkage, (const double(*)[2])design->flat, (const double(*)[3])design->deployed,
+                             design->supports, gravity ? load->direction : NULL, &unit_load);
+    double newton = unit_load * metre * metre * (gravity ? load->density * standard_gravity : load->pressure);
+    double(*x)[3] = ax_alloc((size_t)model.hinges, sizeof *x), *force = AX_NEW0(double, model.edge_count);
+    ax_deployment result;
+    bool finished = ax_deploy(&model, x, force, progress, &result);
+    ax_status status = AX_OK;
+    if (!finished)
+        status = ax_fail(error, AX_CANCELLED, "Cancelled.");
+    else if (result.exact)
+        keep_solution(design, &model, (const double(*)[3])x, force, newton);
+    else if (result.force_over_tension > 100 && result.residuals.edge > 1e-3)
+        status =
+            ax_fail(error, AX_CANNOT_REALISE,
+                    "The supports are too far apart for the linkage: edges would have to stretch by up to %.1e and "
+                    "forces grow without bound. Bring the supports closer, or raise the scale factors.",
+                    result.residuals.edge);
+    else
+        status =
+            ax_fail(error, AX_FAILED,
+                    "The deployment did not reach equilibrium: edges are off by %.1e and forces by %.1e of the load "
+                    "after %d projective and %d exact steps%s. Nothing simulated is kept. Try the other load, more "
+                    "supports, or another number of triangles.",
+                    result.residuals.edge, result.residuals.force, result.projective_steps, result.newton_steps,
+                    result.stable || result.residuals.force > 1e-10 ? "" : ", and the state found is not stable");
+    ax_design_measure(design);
+    design->report.stable = status == AX_OK && result.stable;
+    design->report.projective_steps = result.projective_steps;
+    design->report.newton_steps = result.newton_steps;
+    design->report.seconds_deploy = ax_seconds() - start;
+    ax_free(x);
+    ax_free(force);
+    ax_deploy_model_free(&model);
+    return status;
+}
+
+// Rim hinges in their order round the shell: along each opening from its first to its last hinge, openings joined end to start.
+static int rim_in_order(const ax_linkage* linkage, int* order)
+{
+    int n = linkage->hinge_count, count = 0;
+    int* next = AX_NEW(int, n);
+    memset(next, -1, (size_t)n * sizeof *next);
+    int first = -1;
+    for (int k = 0; k < linkage->opening_count; ++k) {
+        int a = linkage->opening_hinges[linkage->opening_start[k]];
+        next[a] = linkage->opening_hinges[linkage->opening_start[k + 1] - 1];
+    }
+    for (int t = 0; t < linkage->triangle_count; ++t) // a rim hinge and the next on the other side of a corner triangle
+        for (int k = 0; k < 3; ++k) {
+            int a = linkage->triangles[t][k], b = linkage->triangles[t][(k + 1) % 3];
+            if (linkage->on_rim[a] && linkage->on_rim[b]) {
+                if (next[b] < 0)
+                    next[b] = a;
+            }
+        }
+    for (int h = 0; h < n && first < 0; ++h)
+        if (linkage->on_rim[h])
+            first = h;
+    for (int h = first; h >= 0 && count < n; h = next[h]) {
+        order[count++] = h;
+        if (next[h] == first)
+            break;
+    }
+    ax_free(next);
+    return count;
+}
+
+ax_status ax_design_set_supports(ax_design* design, const char* words, ax_error* error)
+{
+    const ax_linkage* linkage = &design->linkage;
+    int n = linkage->hinge_count, every = 1, used = 0;
+    unsigned char* chosen = AX_NEW0(unsigned char, n);
+    ax_status status = AX_OK;
+    if (strcmp(words, "rim") == 0 || (sscanf(words, "rim/%d%n", &every, &used) == 1 && !words[used] && every >= 1)) {
+        int *order = AX_NEW(int, n), count = rim_in_order(linkage, order);
+        for (int k = 0; k < count; k += every)
+            chosen[order[k]] = 1;
+        if (every == 1)
+            memcpy(chosen, linkage->on_rim, (size_t)n);
+        ax_free(order);
+    } else {
+        const char* at = words;
+        while (status == AX_OK && *at) {
+            char* end;
+            long from = isdigit((unsigned char)*at) ? strtol(at, &end, 10) : -1, to = from;
+            if (from >= 0 && *end == '-' && isdigit((unsigned char)end[1]))
+                to = strtol(end + 1, &end, 10);
+            if (from < 0 || (*end && *end != ',') || (*end == ',' && !end[1]))
+                status =
+                    ax_fail(error, AX_USAGE,
+                            "Supports are \"rim\", \"rim/N\" or hinge numbers and ranges such as 0-12,40,77; \"%s\" is "
+                            "none of these.",
+                            words);
+            else if (to >= n || from > to)
+                status = ax_fail(error, AX_USAGE, "Hinges are numbered 0 to %d; %ld to %ld is not among them.", n - 1,
+                                 from, to);
+            for (long h = from; status == AX_OK && h <= to; ++h)
+                chosen[h] = 1;
+            at = status == AX_OK ? end + (*end == ',') : at;
+        }
+        if (status == AX_OK && !*words)
+            status =
+                ax_fail(error, AX_USAGE, "No supports are given: use \"rim\" or hinge numbers such as 0-12,40,77.");
+    }
+    if (status == AX_OK) {
+        ax_free(design->supports);
+        design->supports = chosen;
+        clear_simulated(design); // it belonged to other supports
+        ax_design_measure(design);
+    } else
+        ax_free(chosen);
+    return status;
+}

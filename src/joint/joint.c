@@ -1,0 +1,536 @@
+// Unknowns per hinge: flat p (2) and deployed q (3), lengths in units of the mean edge L. Minimise the soft rows
+//   equilateral  w_t (l_k^2 - l_{k+1}^2) / (2 l^2)      three per triangle, l on q
+//   surface      n . (q - c)                            c closest point, n its normal
+//   rim          (I - t t')(q - c)                      t tangent of the boundary curve
+//   fairness     (q - q0)_a - 2 (q - q0)_h + (q - q0)_b on both kagome lines through a hinge
+//   stay         p - p0, q - q0
+//   mouth        min(beta - beta_min, 0)                one-sided, chosen again at each step
+// subject to  c_e = (|p_i - p_j|^2 - |q_i - q_j|^2) / 2 = 0  for every edge.
+//
+// Each step solves the linearised KKT system by the condensed matrix S'S + mu C'C and Uzawa refinement of the multipliers:
+// one sparse Cholesky of 5 unknowns a hinge, where an LDL' of the full system would have 7 and need pivoting. A sticky active set
+// for the mouths and steps without a merit test were tried and end at congruence 0.05 to 0.3 at the ends of the scale band.
+#include "joint/joint.h"
+
+#include "base/vec.h"
+#include "linalg/cholesky.h"
+#include "linkage/lattice.h"
+
+#include <assert.h>
+#include <string.h>
+
+enum { UNKNOWNS = 5, STEPS = 60 };
+static const double weight_inner = 10, weight_surface = 3, weight_rim = 10, weight_fair = 0.03, weight_stay = 0.003,
+                    weight_mouth = 10, mouth_margin = 1.05;
+
+typedef double state[UNKNOWNS]; // p0, p1, q0, q1, q2 of one hinge
+
+typedef struct solver {
+    const ax_joint_problem* problem;
+    const ax_linkage* linkage;
+    int hinges, triangles, edges, mouths, lines;
+    double unit;      // mean edge, document units
+    double origin[3]; // subtracted from deployed places, so that far-away models lose no digits
+    double flat_origin[2];
+    state *x, *x0, *trial, *step, *right;
+    double *congruence, *multiplier; // per edge 3 t + k
+    double* weight;                  // equilateral, per triangle
+    int (*mouth)[3];                 // previous, hinge, next
+    unsigned char* active;           // per mouth
+    int (*line)[3];                  // a, h, b along kagome lines
+    ax_closest_point* contact;       // per hinge, surface or rim
+    double (*tangent)[3];            // per rim hinge, when on the curve
+    unsigned char* in_pattern;       // per mouth: its outer pair is in the matrix
+    ax_blocks matrix;
+    int (*block)[3];      // per triangle: block opposite each corner
+    int (*line_block)[3]; // per line: a-h, h-b, a-b
+    ax_cholesky* factor;
+    int factorisations;
+} solver;
+
+static void edge_ends(const solver* s, int e, int* i, int* j)
+{
+    const int* corner = s->linkage->triangles[e / 3];
+    *i = corner[(e + 1) % 3], *j = corner[(e + 2) % 3];
+}
+
+// Neighbours straight across each hinge: the two kagome lines through it.
+static void find_lines(solver* s)
+{
+    int(*owners)[2] = ax_linkage_hinge_triangles(s->linkage);
+    s->line = ax_alloc((size_t)s->hinges * 2, sizeof *s->line);
+    for (int h = 0; h < s->hinges; ++h) {
+        if (owners[h][1] < 0)
+            continue;
+        int corner[2] = {0, 0};
+        for (int side = 0; side < 2; ++side)
+            while (s->linkage->triangles[owners[h][side]][corner[side]] != h)
+                ++corner[side];
+        for (int k = 1; k <= 2; ++k, ++s->lines) {
+            s->line[s->lines][0] = s->linkage->triangles[owners[h][0]][(corner[0] + k) % 3];
+            s->line[s->lines][1] = h;
+            s->line[s->lines][2] = s->linkage->triangles[owners[h][1]][(corner[1] + k) % 3];
+        }
+    }
+    ax_free(owners);
+}
+
+static void build_pattern(solver* s)
+{
+    int most = s->edges + s->lines + s->mouths, count = 0;
+    int(*pairs)[2] = ax_alloc((size_t)most, sizeof *pairs);
+    for (int e = 0; e < s->edges; ++e, ++count)
+        edge_ends(s, e, &pairs[count][0], &pairs[count][1]);
+    for (int k = 0; k < s->lines; ++k, ++count)
+        pairs[count][0] = s->line[k][0], pairs[count][1] = s->line[k][2];
+    for (int m = 0; m < s->mouths; ++m)
+        if (s->in_pattern[m])
+            pairs[count][0] = s->mouth[m][0], pairs[count][1] = s->mouth[m][2], ++count;
+    if (s->factor) {
+        ax_blocks_free(&s->matrix);
+        ax_cholesky_free(s->factor);
+    }
+    s->matrix = ax_blocks_make(s->hinges, UNKNOWNS, count, (const int(*)[2])pairs);
+    ax_free(pairs);
+    for (int e = 0; e < s->edges; ++e) {
+        int i, j;
+        edge_ends(s, e, &i, &j);
+        s->block[e / 3][e % 3] = ax_blocks_find(&s->matrix, i, j);
+    }
+    for (int k = 0; k < s->lines; ++k)
+        for (int pair = 0; pair < 3; ++pair)
+            s->line_block[k][pair] = ax_blocks_find(&s->matrix, s->line[k][pair == 1], s->line[k][pair == 0 ? 1 : 2]);
+    s->factor = ax_cholesky_analyse(&s->matrix.matrix, AX_FACTOR_SUPERNODAL);
+}
+
+static double constraint(const solver* s, const state* x, int e)
+{
+    int i, j;
+    edge_ends(s, e, &i, &j);
+    double d[UNKNOWNS];
+    for (int k = 0; k < UNKNOWNS; ++k)
+        d[k] = x[i][k] - x[j][k];
+    return (d[0] * d[0] + d[1] * d[1] - d[2] * d[2] - d[3] * d[3] - d[4] * d[4]) / 2;
+}
+
+static double worst_congruence(const solver* s, const state* x)
+{
+    double worst = 0;
+    for (int e = 0; e < s->edges; ++e) {
+        int i, j;
+        edge_ends(s, e, &i, &j);
+        double p = hypot(x[i][0] - x[j][0], x[i][1] - x[j][1]);
+        double q = ax_distance3(x[i] + 2, x[j] + 2);
+        worst = fmax(worst, fabs(p / q - 1));
+    }
+    return worst;
+}
+
+static double mouth_angle(const solver* s, const state* x, int m)
+{
+    return ax_mouth_angle(x[s->mouth[m][0]], x[s->mouth[m][1]], x[s->mouth[m][2]]);
+}
+
+static double mouth_bound(const solver* s)
+{
+    return s->problem->mouth_min * mouth_margin;
+}
+
+// Equilateral rows of a triangle: residuals r[3] and gradients with respect to the q of its corners.
+static void equilateral_rows(const solver* s, const state* x, int t, double r[3], double gradient[3][3][3])
+{
+    const int* corner = s->linkage->triangles[t];
+    double d[3][3], l2[3], mean = 0;
+    for (int k = 0; k < 3; ++k) {
+        ax_sub3(x[corner[(k + 1) % 3]] + 2, x[corner[(k + 2) % 3]] + 2, d[k]);
+        l2[k] = ax_dot3(d[k], d[k]);
+        mean += l2[k] / 3;
+    }
+    double w = s->weight[t] / mean;
+    for (int row = 0; row < 3; ++row) {
+        int a = row, b = (row + 1) % 3;
+        r[row] = w * (l2[a] - l2[b]) / 2;
+        if (!gradient)
+            continue;
+        memset(gradient[row], 0, sizeof gradient[row]);
+        for (int c = 0; c < 3; ++c) {
+            gradient[row][(a + 1) % 3][c] += w * d[a][c];
+            gradient[row][(a + 2) % 3][c] -= w * d[a][c];
+            gradient[row][(b + 1) % 3][c] -= w * d[b][c];
+            gradient[row][(b + 2) % 3][c] += w * d[b][c];
+        }
+    }
+}
+
+static bool on_curve(const solver* s, int hinge)
+{
+    return s->problem->rim && s->linkage->on_rim[hinge];
+}
+
+// Closest points of all deployed hinges; those of the last step seed the search.
+static void find_contacts(solver* s)
+{
+    for (int h = 0; h < s->hinges; ++h) {
+        double place[3];
+        for (int c = 0; c < 3; ++c)
+            place[c] = s->x[h][2 + c] * s->unit + s->origin[c];
+        ax_closest_point* contact = &s->contact[h];
+        if (on_curve(s, h)) {
+            ax_polyline_point at = ax_polyline_find(s->problem->rim, place);
+            memcpy(contact->point, at.point, sizeof at.point);
+            memcpy(s->tangent[h], at.tangent, sizeof at.tangent);
+        } else
+            *contact = ax_closest_find(s->problem->surface, place, contact->face);
+        for (int c = 0; c < 3; ++c)
+            contact->point[c] = (contact->point[c] - s->origin[c]) / s->unit;
+    }
+}
+
+// Half the sum of squares of all soft rows, contacts held.
+static double objective(const solver* s, const state* x)
+{
+    double sum = 0;
+    for (int t = 0; t < s->triangles; ++t) {
+        double r[3];
+        equilateral_rows(s, x, t, r, NULL);
+        sum += r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+    }
+    double stay = 0, contact = 0;
+    for (int h = 0; h < s->hinges; ++h) {
+        double d[3];
+        ax_sub3(x[h] + 2, s->contact[h].point, d);
+        if (on_curve(s, h)) {
+            double along = ax_dot3(s->tangent[h], d);
+            contact += weight_rim * weight_rim * (ax_dot3(d, d) - along * along);
+        } else {
+            double out = ax_dot3(s->contact[h].normal, d);
+            contact += weight_surface * weight_surface * out * out;
+        }
+        for (int k = 0; k < UNKNOWNS; ++k)
+            stay += (x[h][k] - s->x0[h][k]) * (x[h][k] - s->x0[h][k]);
+    }
+    double fair = 0;
+    for (int k = 0; k < s->lines; ++k)
+        for (int c = 2; c < UNKNOWNS; ++c) {
+            const int* l = s->line[k];
+            double bend =
+                (x[l[0]][c] - s->x0[l[0]][c]) - 2 * (x[l[1]][c] - s->x0[l[1]][c]) + (x[l[2]][c] - s->x0[l[2]][c]);
+            fair += bend * bend;
+        }
+    double mouths = 0;
+    for (int m = 0; m < s->mouths; ++m) {
+        double short_of = fmin(mouth_angle(s, x, m) - mouth_bound(s), 0);
+        mouths += short_of * short_of;
+    }
+    return (sum + contact + weight_stay * weight_stay * stay + weight_fair * weight_fair * fair +
+            weight_mouth * weight_mouth * mouths) /
+           2;
+}
+
+static double merit(const solver* s, const state* x, double nu)
+{
+    double violation = 0;
+    for (int e = 0; e < s->edges; ++e)
+        violation += fabs(constraint(s, x, e));
+    return objective(s, x) + nu * violation;
+}
+
+// Adds w * left right' to the block of two nodes, whichever is the larger.
+static void add_product(solver* s, int k, int i, int j, const double* left, const double* right, double w)
+{
+    double block[UNKNOWNS * UNKNOWNS];
+    const double *row = i > j ? left : right, *column = i > j ? right : left;
+    for (int r = 0; r < UNKNOWNS; ++r)
+        for (int c = 0; c < UNKNOWNS; ++c)
+            block[r * UNKNOWNS + c] = w * row[r] * column[c];
+    ax_blocks_add(&s->matrix, k, i < j ? i : j, block);
+}
+
+static void add_square(solver* s, int i, const double* gradient, double w)
+{
+    double block[UNKNOWNS * UNKNOWNS];
+    for (int r = 0; r < UNKNOWNS; ++r)
+        for (int c = 0; c < UNKNOWNS; ++c)
+            block[r * UNKNOWNS + c] = w * gradient[r] * gradient[c];
+    ax_blocks_add_diagonal(&s->matrix, i, block);
+}
+
+static void add_scaled(double* to, const double* from, double factor)
+{
+    for (int k = 0; k < UNKNOWNS; ++k)
+        to[k] += factor * from[k];
+}
+
+// Gradient of constraint e with respect to its first end; the second end has the opposite.
+static void constraint_gradient(const state* x, int i, int j, double g[UNKNOWNS])
+{
+    for (int k = 0; k < UNKNOWNS; ++k)
+        g[k] = (k < 2 ? 1 : -1) * (x[i][k] - x[j][k]);
+}
+
+// The condensed matrix and the gradient of the soft rows (into `right`).
+static void assemble(solver* s, double mu)
+{
+    const state* x = (const state*)s->x;
+    ax_blocks_clear(&s->matrix);
+    memset(s->right, 0, (size_t)s->hinges * sizeof *s->right);
+    for (int e = 0; e < s->edges; ++e) {
+        int i, j;
+        double g[UNKNOWNS];
+        edge_ends(s, e, &i, &j);
+        constraint_gradient(x, i, j, g);
+        add_square(s, i, g, mu);
+        add_square(s, j, g, mu);
+        add_product(s, s->block[e / 3][e % 3], i, j, g, g, -mu);
+        s->congruence[e] = constraint(s, x, e);
+    }
+    for (int t = 0; t < s->triangles; ++t) {
+        const int* corner = s->linkage->triangles[t];
+        double r[3], gradient[3][3][3], wide[3][UNKNOWNS] = {{0}};
+        equilateral_rows(s, x, t, r, gradient);
+        for (int row = 0; row < 3; ++row) {
+            for (int k = 0; k < 3; ++k) {
+                memcpy(wide[k] + 2, gradient[row][k], sizeof gradient[row][k]);
+                add_square(s, corner[k], wide[k], 1);
+                add_scaled(s->right[corner[k]], wide[k], r[row]);
+            }
+            for (int k = 0; k < 3; ++k) {
+                int a = (k + 1) % 3, b = (k + 2) % 3;
+                add_product(s, s->block[t][k], corner[a], corner[b], wide[a], wide[b], 1);
+            }
+        }
+    }
+    for (int h = 0; h < s->hinges; ++h) {
+        double block[UNKNOWNS * UNKNOWNS] = {0}, d[3];
+        ax_sub3(x[h] + 2, s->contact[h].point, d);
+        const double *n = s->contact[h].normal, *t = s->tangent[h];
+        bool curve = on_curve(s, h);
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) {
+                double w = curve ? weight_rim * weight_rim * ((r == c) - t[r] * t[c])
+                                 : weight_surface * weight_surface * n[r] * n[c];
+                block[(r + 2) * UNKNOWNS + c + 2] = w;
+                s->right[h][2 + r] += w * d[c];
+            }
+        for (int k = 0; k < UNKNOWNS; ++k) {
+            block[k * UNKNOWNS + k] += weight_stay * weight_stay;
+            s->right[h][k] += weight_stay * weight_stay * (x[h][k] - s->x0[h][k]);
+        }
+        ax_blocks_add_diagonal(&s->matrix, h, block);
+    }
+    static const double bend[3] = {1, -2, 1};
+    double w = weight_fair * weight_fair;
+    for (int k = 0; k < s->lines; ++k) {
+        const int* l = s->line[k];
+        for (int pair = 0; pair < 3; ++pair) {
+            int a = pair == 1, b = pair == 0 ? 1 : 2;
+            double block[UNKNOWNS * UNKNOWNS] = {0};
+            for (int c = 2; c < UNKNOWNS; ++c)
+                block[c * UNKNOWNS + c] = w * bend[a] * bend[b];
+            ax_blocks_add(&s->matrix, s->line_block[k][pair], l[a] < l[b] ? l[a] : l[b], block);
+        }
+        for (int a = 0; a < 3; ++a) {
+            double block[UNKNOWNS * UNKNOWNS] = {0};
+            for (int c = 2; c < UNKNOWNS; ++c) {
+                block[c * UNKNOWNS + c] = w * bend[a] * bend[a];
+                double sum = 0;
+                for (int b = 0; b < 3; ++b)
+                    sum += bend[b] * (x[l[b]][c] - s->x0[l[b]][c]);
+                s->right[l[a]][c] += w * bend[a] * sum;
+            }
+            ax_blocks_add_diagonal(&s->matrix, l[a], block);
+        }
+    }
+    for (int m = 0; m < s->mouths; ++m) {
+        if (!s->active[m])
+            continue;
+        const int* hinge = s->mouth[m];
+        double gradient[3][UNKNOWNS] = {{0}};
+        double a[2], b[2];
+        for (int c = 0; c < 2; ++c)
+            a[c] = x[hinge[0]][c] - x[hinge[1]][c], b[c] = x[hinge[2]][c] - x[hinge[1]][c];
+        double a2 = a[0] * a[0] + a[1] * a[1], b2 = b[0] * b[0] + b[1] * b[1];
+        gradient[0][0] = -a[1] / a2, gradient[0][1] = a[0] / a2;
+        gradient[2][0] = b[1] / b2, gradient[2][1] = -b[0] / b2;
+        for (int c = 0; c < 2; ++c)
+            gradient[1][c] = -(gradient[0][c] + gradient[2][c]);
+        double r = mouth_angle(s, x, m) - mouth_bound(s), w2 = weight_mouth * weight_mouth;
+        for (int k = 0; k < 3; ++k) {
+            add_square(s, hinge[k], gradient[k], w2);
+            add_scaled(s->right[hinge[k]], gradient[k], w2 * r);
+            int o = (k + 1) % 3;
+            add_product(s, ax_blocks_find(&s->matrix, hinge[k], hinge[o]), hinge[k], hinge[o], gradient[k], gradient[o],
+                        w2);
+        }
+    }
+}
+
+// Solves  S'S d + C'y = -g,  C d = -c  by Uzawa iterations on the factor of S'S + mu C'C. The multipliers start at those of
+// the last step.
+static void solve_step(solver* s, double mu)
+{
+    const state* x = (const state*)s->x;
+    double scale = 0;
+    for (int e = 0; e < s->edges; ++e)
+        scale += s->congruence[e] * s->congruence[e];
+    for (int round = 0; round < 12; ++round) {
+        memcpy(s->step, s->right, (size_t)s->hinges * sizeof *s->step);
+        for (int e = 0; e < s->edges; ++e) {
+            int i, j;
+            double g[UNKNOWNS];
+            edge_ends(s, e, &i, &j);
+            constraint_gradient(x, i, j, g);
+            double y = s->multiplier[e] + mu * s->congruence[e];
+            add_scaled(s->step[i], g, y);
+            add_scaled(s->step[j], g, -y);
+        }
+        ax_cholesky_solve(s->factor, s->step[0], s->step[0], 1);
+        double left = 0;
+        for (int e = 0; e < s->edges; ++e) {
+            int i, j;
+            double g[UNKNOWNS], change = s->congruence[e];
+            edge_ends(s, e, &i, &j);
+            constraint_gradient(x, i, j, g);
+            for (int k = 0; k < UNKNOWNS; ++k)
+                change -= g[k] * (s->step[i][k] - s->step[j][k]);
+            s->multiplier[e] += mu * change;
+            left += change * change;
+        }
+        if (left <= 1e-6 * fmin(1, scale) * scale || left < 1e-30 * s->edges)
+            break;
+    }
+    for (int h = 0; h < s->hinges; ++h)
+        for (int k = 0; k < UNKNOWNS; ++k)
+            s->step[h][k] = -s->step[h][k];
+}
+
+static void refresh_active(solver* s)
+{
+    bool grown = false;
+    for (int m = 0; m < s->mouths; ++m) {
+        s->active[m] = mouth_angle(s, (const state*)s->x, m) < mouth_bound(s);
+        if (s->active[m] && !s->in_pattern[m])
+            s->in_pattern[m] = 1, grown = true;
+    }
+    if (grown)
+        build_pattern(s);
+}
+
+static solver make(const ax_joint_problem* problem, double (*flat)[2], double (*deployed)[3])
+{
+    const ax_linkage* linkage = problem->linkage;
+    int n = linkage->hinge_count;
+    solver s = {.problem = problem,
+                .linkage = linkage,
+                .hinges = n,
+                .triangles = linkage->triangle_count,
+                .edges = 3 * linkage->triangle_count};
+    for (int e = 0; e < s.edges; ++e) {
+        int i, j;
+        edge_ends(&s, e, &i, &j);
+        s.unit += ax_distance2(flat[i], flat[j]) / s.edges;
+    }
+    for (int h = 0; h < n; ++h) {
+        for (int c = 0; c < 2; ++c)
+            s.flat_origin[c] += flat[h][c] / n;
+        for (int c = 0; c < 3; ++c)
+            s.origin[c] += deployed[h][c] / n;
+    }
+    s.x = ax_alloc((size_t)n, sizeof *s.x);
+    for (int h = 0; h < n; ++h)
+        for (int k = 0; k < UNKNOWNS; ++k)
+            s.x[h][k] =
+                k < 2 ? (flat[h][k] - s.flat_origin[k]) / s.unit : (deployed[h][k - 2] - s.origin[k - 2]) / s.unit;
+    s.x0 = ax_copy(s.x, (size_t)n, sizeof *s.x);
+    s.trial = ax_alloc((size_t)n, sizeof *s.x);
+    s.step = ax_alloc((size_t)n, sizeof *s.x);
+    s.right = ax_alloc((size_t)n, sizeof *s.x);
+    s.congruence = AX_NEW0(double, s.edges);
+    s.multiplier = AX_NEW0(double, s.edges);
+    s.weight = AX_NEW(double, s.triangles);
+    for (int t = 0; t < s.triangles; ++t) {
+        const int* corner = linkage->triangles[t];
+        bool border = linkage->on_rim[corner[0]] || linkage->on_rim[corner[1]] || linkage->on_rim[corner[2]];
+        s.weight[t] = border && problem->rim ? problem->border_weight : weight_inner;
+    }
+    s.mouth = ax_linkage_mouths(linkage, &s.mouths);
+    s.active = AX_NEW0(unsigned char, s.mouths);
+    s.in_pattern = AX_NEW0(unsigned char, s.mouths);
+    s.contact = AX_NEW0(ax_closest_point, n);
+    for (int h = 0; h < n; ++h)
+        s.contact[h].face = -1;
+    s.tangent = ax_calloc((size_t)n, sizeof *s.tangent);
+    s.block = ax_alloc((size_t)s.triangles, sizeof *s.block);
+    find_lines(&s);
+    s.line_block = ax_alloc((size_t)s.lines, sizeof *s.line_block);
+    build_pattern(&s);
+    return s;
+}
+
+static void release(solver* s)
+{
+    void* blocks[] = {s->x,          s->x0,     s->trial, s->step,      s->right,      s->congruence,
+                      s->multiplier, s->weight, s->mouth, s->active,    s->in_pattern, s->contact,
+                      s->tangent,    s->block,  s->line,  s->line_block};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+        ax_free(blocks[k]);
+    ax_blocks_free(&s->matrix);
+    ax_cholesky_free(s->factor);
+}
+
+ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], double (*deployed)[3],
+                         const ax_progress* progress, ax_joint_result* result, ax_error* error)
+{
+    solver s = make(problem, flat, deployed);
+    ax_status status = AX_OK;
+    size_t bytes = (size_t)s.hinges * sizeof *s.x;
+    double previous = INFINITY, mu = 1e3, congruence = worst_congruence(&s, (const state*)s.x);
+    int k = 0;
+    for (; k < STEPS; ++k) {
+        if (!ax_progress_report(progress, "Solving flat and deployed state together", (double)k / STEPS, congruence)) {
+            status = ax_fail(error, AX_CANCELLED, "Cancelled.");
+            break;
+        }
+        find_contacts(&s);
+        refresh_active(&s);
+        double now = objective(&s, (const state*)s.x);
+        if (congruence < 1e-12 && fabs(previous - now) <= 1e-6 * now)
+            break;
+        previous = now;
+
+        assemble(&s, mu);
+        if (!ax_cholesky_factor(s.factor, &s.matrix.matrix))
+            break; // rounding has eaten the stay term: keep the last good state
+        ++s.factorisations;
+        solve_step(&s, mu);
+
+        double longest = 0, stiffest = 0;
+        for (int h = 0; h < s.hinges; ++h)
+            for (int c = 0; c < UNKNOWNS; ++c)
+                longest = fmax(longest, fabs(s.step[h][c]));
+        for (int e = 0; e < s.edges; ++e)
+            stiffest = fmax(stiffest, fabs(s.multiplier[e]));
+        double nu = fmax(2 * stiffest, 1e-8), before = merit(&s, (const state*)s.x, nu), t = fmin(1, 0.5 / longest);
+        for (int halving = 0;; ++halving, t /= 2) {
+            for (int h = 0; h < s.hinges; ++h)
+                for (int c = 0; c < UNKNOWNS; ++c)
+                    s.trial[h][c] = s.x[h][c] + t * s.step[h][c];
+            if (halving == 6 || merit(&s, (const state*)s.trial, nu) <= before * (1 + 1e-12))
+                break;
+        }
+        memcpy(s.x, s.trial, bytes);
+        congruence = worst_congruence(&s, (const state*)s.x);
+        mu = k < 2 ? 1e3 : 1e5;
+    }
+    if (status == AX_OK)
+        for (int h = 0; h < s.hinges; ++h) {
+            for (int c = 0; c < 2; ++c)
+                flat[h][c] = s.x[h][c] * s.unit + s.flat_origin[c];
+            for (int c = 0; c < 3; ++c)
+                deployed[h][c] = s.x[h][2 + c] * s.unit + s.origin[c];
+        }
+    *result = (ax_joint_result){
+        .steps = k, .factorisations = s.factorisations, .congruence = congruence, .converged = congruence < 1e-10};
+    release(&s);
+    return status;
+}
