@@ -34,11 +34,11 @@ static void progress_parts_map_into_the_whole_and_cancel(void** state)
     ax_progress whole = {remember, &seen};
     ax_progress_part slot;
     const ax_progress* part = ax_progress_within(&slot, &whole, 0.4, 0.8);
-    assert_true(ax_report(part, "half", 0.0, 0));
+    assert_true(ax_progress_report(part, "half", 0.0, 0));
     assert_near(seen, 0.4, 1e-15);
-    assert_false(ax_report(part, "half", 0.5, 0));
+    assert_false(ax_progress_report(part, "half", 0.5, 0));
     assert_near(seen, 0.6, 1e-15);
-    assert_true(ax_report(NULL, "nobody", 1, 0));
+    assert_true(ax_progress_report(NULL, "nobody", 1, 0));
     assert_null(ax_progress_within(&slot, NULL, 0, 1));
 }
 
