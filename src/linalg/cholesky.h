@@ -9,6 +9,7 @@ typedef struct ax_cholesky ax_cholesky;
 typedef enum ax_factor_kind {
     AX_FACTOR_SUPERNODAL, // dense blocks: best when factored often
     AX_FACTOR_SIMPLICIAL, // columns: best for many solves with one factor
+    AX_FACTOR_ONCE,       // whichever is quicker for one factorisation and a few solves, by the work per entry
 } ax_factor_kind;
 
 // Orders and analyses the pattern of `matrix` (values are not read). Never fails on a sound pattern.

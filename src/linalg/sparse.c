@@ -33,6 +33,33 @@ void ax_sparse_multiply(const ax_sparse* matrix, const double* x, double* y, int
     }
 }
 
+ax_sparse ax_sparse_principal(const ax_sparse* matrix, const int* index)
+{
+    int count = 0, entries = 0;
+    for (int j = 0; j < matrix->n; ++j)
+        if (index[j] >= 0) {
+            ++count;
+            for (int k = matrix->start[j]; k < matrix->start[j + 1]; ++k)
+                entries += index[matrix->row[k]] >= 0;
+        }
+    ax_sparse part = {
+        .n = count, .start = AX_NEW(int, count + 1), .row = AX_NEW(int, entries), .value = AX_NEW(double, entries)};
+    int used = 0, column = 0;
+    for (int j = 0; j < matrix->n; ++j) {
+        if (index[j] < 0)
+            continue;
+        assert(index[j] == column);
+        part.start[column++] = used;
+        for (int k = matrix->start[j]; k < matrix->start[j + 1]; ++k)
+            if (index[matrix->row[k]] >= 0) {
+                part.row[used] = index[matrix->row[k]];
+                part.value[used++] = matrix->value[k];
+            }
+    }
+    part.start[count] = used;
+    return part;
+}
+
 void ax_entries_add(ax_entries* entries, int row, int column, double value)
 {
     if (entries->count == entries->capacity) {

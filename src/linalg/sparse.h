@@ -14,6 +14,9 @@ void ax_sparse_free(ax_sparse* matrix);
 // y = A x, for `columns` vectors stored one after the other.
 void ax_sparse_multiply(const ax_sparse* matrix, const double* x, double* y, int columns);
 
+// The rows and columns i with index[i] >= 0, renumbered to index[i]. `index` grows with i over those and has n entries.
+ax_sparse ax_sparse_principal(const ax_sparse* matrix, const int* index);
+
 // Assembly by entries: entries of either triangle are folded into the lower one, equal places are summed, in the order
 // in which they were added. Off-diagonal entries stand for both (i, j) and (j, i): add each symmetric pair once.
 typedef struct ax_entries {
