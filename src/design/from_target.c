@@ -38,35 +38,35 @@ typedef struct flat_domain {
     double area, mean_scale;
 } flat_domain;
 
-static flat_domain make_domain(const ax_mesh* target, const ax_flattening* flattening, double lo, double hi)
+// In place: the trees keep the address of the meshes.
+static void make_domain(const ax_mesh* target, const ax_flattening* flattening, double lo, double hi, flat_domain* d)
 {
-    flat_domain d = {.target = target, .flattening = flattening};
-    d.factor = sqrt(lo * hi) * exp((flattening->u_max + flattening->u_min) / 2);
-    d.mesh = (ax_mesh){.vertex_count = target->vertex_count, .face_count = target->face_count, .faces = target->faces};
-    d.mesh.positions = ax_calloc((size_t)target->vertex_count, sizeof *d.mesh.positions);
+    *d = (flat_domain){.target = target, .flattening = flattening};
+    d->factor = sqrt(lo * hi) * exp((flattening->u_max + flattening->u_min) / 2);
+    d->mesh = (ax_mesh){.vertex_count = target->vertex_count, .face_count = target->face_count, .faces = target->faces};
+    d->mesh.positions = ax_calloc((size_t)target->vertex_count, sizeof *d->mesh.positions);
     for (int v = 0; v < target->vertex_count; ++v)
         for (int c = 0; c < 2; ++c)
-            d.mesh.positions[v][c] = flattening->uv[v][c] / d.factor;
+            d->mesh.positions[v][c] = flattening->uv[v][c] / d->factor;
     int n = flattening->rim_count;
-    d.outline = ax_alloc((size_t)n, sizeof *d.outline);
-    d.rim_flat = ax_calloc((size_t)n, sizeof *d.rim_flat);
-    d.rim_target = ax_alloc((size_t)n, sizeof *d.rim_target);
+    d->outline = ax_alloc((size_t)n, sizeof *d->outline);
+    d->rim_flat = ax_calloc((size_t)n, sizeof *d->rim_flat);
+    d->rim_target = ax_alloc((size_t)n, sizeof *d->rim_target);
     for (int k = 0; k < n; ++k) {
-        memcpy(d.outline[k], d.mesh.positions[flattening->rim[k]], sizeof d.outline[k]);
-        memcpy(d.rim_flat[k], d.outline[k], sizeof d.outline[k]);
-        memcpy(d.rim_target[k], target->positions[flattening->rim[k]], sizeof d.rim_target[k]);
+        memcpy(d->outline[k], d->mesh.positions[flattening->rim[k]], sizeof d->outline[k]);
+        memcpy(d->rim_flat[k], d->outline[k], sizeof d->outline[k]);
+        memcpy(d->rim_target[k], target->positions[flattening->rim[k]], sizeof d->rim_target[k]);
     }
-    d.flat_curve = ax_polyline_make(n, (const double(*)[3])d.rim_flat);
-    d.target_curve = ax_polyline_make(n, (const double(*)[3])d.rim_target);
-    d.flat_tree = ax_closest_make(&d.mesh);
-    d.target_tree = ax_closest_make(target);
+    d->flat_curve = ax_polyline_make(n, (const double(*)[3])d->rim_flat);
+    d->target_curve = ax_polyline_make(n, (const double(*)[3])d->rim_target);
+    d->flat_tree = ax_closest_make(&d->mesh);
+    d->target_tree = ax_closest_make(target);
     double curved = 0;
-    for (int f = 0; f < d.mesh.face_count; ++f) {
-        d.area += ax_face_area(&d.mesh, f);
+    for (int f = 0; f < d->mesh.face_count; ++f) {
+        d->area += ax_face_area(&d->mesh, f);
         curved += ax_face_area(target, f);
     }
-    d.mean_scale = sqrt(curved / d.area);
-    return d;
+    d->mean_scale = sqrt(curved / d->area);
 }
 
 static void free_domain(flat_domain* d)
@@ -251,14 +251,6 @@ static ax_status accept_target(ax_design* design, const ax_design_options* optio
                        "inflation, or turn the target so that z is up.");
     design->scale_ratio = screen->scale_ratio;
 
-    // the smallest mouth follows from the largest scale factor: 120 - 2 acos(1 / lambda) degrees
-    double mouth = 120 - 2 * acos(1 / fmax(1, screen->scale_hi)) * 180 / AX_PI;
-    if (mouth < options->mouth_min)
-        return ax_fail(
-            error, AX_CANNOT_REALISE,
-            "A scale factor of %.3f leaves mouths of %.2f degrees, less than the %.2f asked. Lower --mouth-min, "
-            "or lower the upper limit of --scale.",
-            screen->scale_hi, mouth, options->mouth_min);
     return AX_OK;
 }
 
@@ -299,8 +291,8 @@ static ax_status solve_states(ax_design* design, const ax_design_options* option
 {
     static const double border_weight[] = {
         [AX_BORDER_EQUILATERAL] = 3, [AX_BORDER_RELEASED] = 0.02, [AX_BORDER_INSIDE] = 10};
-    flat_domain domain =
-        make_domain(&design->target, &screen->flattening, options->target.scale_lo, options->target.scale_hi);
+    flat_domain domain;
+    make_domain(&design->target, &screen->flattening, options->target.scale_lo, options->target.scale_hi, &domain);
     ax_lattice lattice = {0};
     ax_status status = lay(&domain, options, &lattice, error);
     if (status == AX_OK) {

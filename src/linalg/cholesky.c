@@ -14,14 +14,13 @@ struct ax_cholesky {
     ax_cholesky_counters counters;
 };
 
-// Results must not depend on the number of cores, so whichever BLAS is linked is told to use one thread.
-static void hold_blas_to_one_thread(void)
+// Results must not depend on the number of cores, and at our sizes threads cost more than they give: whichever BLAS is
+// linked is told to use one thread, and so is the OpenMP run-time inside CHOLMOD. The latter's setting belongs to the
+// calling thread, so it is made again at each call.
+static void hold_to_one_thread(void)
 {
-    static bool done;
-    if (done)
-        return;
-    done = true;
-    static const char* const names[] = {"openblas_set_num_threads", "bli_thread_set_num_threads"};
+    static const char* const names[] = {"omp_set_num_threads", "openblas_set_num_threads",
+                                        "bli_thread_set_num_threads"};
     for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
         void* symbol = dlsym(RTLD_DEFAULT, names[k]);
         void (*set)(int);
@@ -49,7 +48,7 @@ static cholmod_sparse view(const ax_sparse* matrix)
 
 ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind)
 {
-    hold_blas_to_one_thread();
+    hold_to_one_thread();
     ax_cholesky* factor = AX_NEW0(ax_cholesky, 1);
     cholmod_common* common = &factor->common;
     cholmod_start(common);
@@ -96,6 +95,7 @@ bool ax_cholesky_factor(ax_cholesky* factor, const ax_sparse* matrix)
 {
     assert((size_t)matrix->n == factor->factor->n);
     cholmod_sparse a = view(matrix);
+    hold_to_one_thread();
     cholmod_factorize(&a, factor->factor, &factor->common);
     ++factor->counters.factorisations;
     factor->counters.entries = factor->factor->is_super ? (double)factor->factor->xsize : (double)factor->factor->nzmax;
@@ -112,6 +112,7 @@ void ax_cholesky_solve(ax_cholesky* factor, const double* b, double* x, int colu
                            .x = (void*)b,
                            .xtype = CHOLMOD_REAL,
                            .dtype = CHOLMOD_DOUBLE};
+    hold_to_one_thread();
     cholmod_solve2(CHOLMOD_A, factor->factor, &right, NULL, &factor->x, NULL, &factor->y, &factor->e, &factor->common);
     memcpy(x, factor->x->x, n * (size_t)columns * sizeof *x);
     ++factor->counters.solves;
