@@ -16,6 +16,15 @@ typedef struct ax_target_options {
 } ax_target_options;
 ax_target_options ax_target_options_default(void);
 
+// What projection to positive mean curvature has done to a surface.
+typedef struct ax_projection {
+    double moved_area_share;  // share of area moved by more than 1e-6 of the diagonal
+    double largest_move;      // document units
+    double curvature_min;     // after: smallest one-ring average of H
+    double nonpositive_share; // after: share of area with H <= 0
+    int steps;                // 0: H > 0 already, nothing moved
+} ax_projection;
+
 typedef struct ax_screen {
     double area, diagonal; // document units
     double bounds[2][3];   // lowest and highest corner
@@ -33,6 +42,7 @@ typedef struct ax_screen {
     bool scale_fits;
     ax_verdict verdict;
     bool by_inflation, by_gravity; // how it deploys, as it is or after projection
+    ax_projection projection;      // what the projection does, where H > 0 fails; else zero
     char words[1024];              // the verdict in sentences
     int vertex_count;
     double* curvature;        // H per vertex (one-ring average), owned
@@ -46,14 +56,6 @@ void ax_screen_free(ax_screen* screen);
 // a surface that cannot deploy is an answer (verdict), not an error.
 ax_status ax_target_screen(const ax_mesh* mesh, const ax_target_options* options, const ax_progress* progress,
                            ax_screen* out, ax_error* error);
-
-typedef struct ax_projection {
-    double moved_area_share;  // share of area moved by more than 1e-6 of the diagonal
-    double largest_move;      // document units
-    double curvature_min;     // after: smallest one-ring average of H
-    double nonpositive_share; // after: share of area with H <= 0
-    int steps;
-} ax_projection;
 
 // Moves `mesh` to the nearest surface of positive mean curvature outside it (obstacle problem, rim fixed); topology is kept.
 // AX_CANNOT_REALISE if no part of the surface is dome-like, so that projection would replace all of it.
