@@ -135,8 +135,10 @@ static void say_loads(ax_screen* screen)
 {
     if (!screen->by_gravity)
         say(screen, "by inflation; not by gravity, since it is no height field over the xy-plane");
+    else if (screen->gravity_direction > 0)
+        say(screen, "by inflation, and by gravity towards +z, hung upside down");
     else
-        say(screen, "by inflation, and by gravity when hung towards %cz", screen->gravity_direction > 0 ? '+' : '-');
+        say(screen, "by inflation, and by gravity towards -z");
 }
 
 static void accept(ax_screen* screen, const ax_mesh* mesh, const ax_target_options* options, const scale_fit* fit)
@@ -150,7 +152,9 @@ static void accept(ax_screen* screen, const ax_mesh* mesh, const ax_target_optio
         say(screen, ". ");
     } else
         say(screen, "Not deployable. ");
-    say(screen, "The surface bulges outwards everywhere, with a mean curvature of %.3g, %.3g at least. ",
+    say(screen,
+        "The surface bulges outwards everywhere: its mean curvature is %.3g at the median, %.3g or more on 99 %% of "
+        "the area. ",
         screen->curvature_median, screen->curvature_q01);
     if (screen->curvature_nonpositive_share > 0) {
         say(screen, "On %.2g %% of the area, near ", 100 * screen->curvature_nonpositive_share);
