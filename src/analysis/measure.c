@@ -59,27 +59,35 @@ static double quantile(double* values, int count, double share)
     return values[(int)fmin(count - 1, floor(share * count))];
 }
 
-ax_mouth_measure ax_measure_mouths(const ax_linkage* linkage, const double (*flat)[2])
+// The smaller of the two signed gaps at each hinge, radians; infinite where there is none. Owned by the caller.
+static double* smallest_mouths(const ax_linkage* linkage, const double (*flat)[2])
 {
-    int count, n = linkage->hinge_count;
+    int count;
     int(*mouth)[3] = ax_linkage_mouths(linkage, &count);
-    double* smallest = AX_NEW(double, n);
-    for (int h = 0; h < n; ++h)
+    double* smallest = AX_NEW(double, linkage->hinge_count);
+    for (int h = 0; h < linkage->hinge_count; ++h)
         smallest[h] = INFINITY;
     for (int m = 0; m < count; ++m) {
         double angle = ax_mouth_angle(flat[mouth[m][0]], flat[mouth[m][1]], flat[mouth[m][2]]);
-        smallest[mouth[m][1]] = fmin(smallest[mouth[m][1]], angle * 180 / AX_PI);
+        smallest[mouth[m][1]] = fmin(smallest[mouth[m][1]], angle);
     }
+    ax_free(mouth);
+    return smallest;
+}
+
+ax_mouth_measure ax_measure_mouths(const ax_linkage* linkage, const double (*flat)[2])
+{
+    double* smallest = smallest_mouths(linkage, flat);
     ax_mouth_measure m = {.min_deg = INFINITY, .min_hinge = -1};
     int used = 0;
-    for (int h = 0; h < n; ++h) {
-        if (smallest[h] < m.min_deg)
-            m.min_deg = smallest[h], m.min_hinge = h;
-        if (isfinite(smallest[h]))
-            smallest[used++] = smallest[h];
+    for (int h = 0; h < linkage->hinge_count; ++h) {
+        double degrees = smallest[h] * 180 / AX_PI;
+        if (degrees < m.min_deg)
+            m.min_deg = degrees, m.min_hinge = h;
+        if (isfinite(degrees))
+            smallest[used++] = degrees;
     }
     m.median_deg = quantile(smallest, used, 0.5);
-    ax_free(mouth);
     ax_free(smallest);
     return m;
 }
@@ -169,61 +177,44 @@ int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2])
     return flipped;
 }
 
+// Scale factor that the mouths of a triangle show: beta = 120 degrees - 2 theta, lambda = 1 / cos theta.
+static double scale_of_mouths(const int corner[3], const double* mouth)
+{
+    double sum = 0;
+    int count = 0;
+    for (int k = 0; k < 3; ++k)
+        if (isfinite(mouth[corner[k]]))
+            sum += mouth[corner[k]], ++count;
+    return count ? 1 / cos(ax_clamp((2 * AX_PI / 3 - sum / count) / 2, 0, AX_PI / 3)) : NAN;
+}
+
 void ax_measure_scale(const ax_linkage* linkage, const double (*flat)[2], double* scale)
 {
     int count = linkage->triangle_count;
     int(*owners)[2] = ax_linkage_hinge_triangles(linkage);
-    double(*centre)[2] = ax_calloc((size_t)count, sizeof *centre), *spacing = AX_NEW0(double, count), mean = 0;
-    int inner = 0;
+    double(*centre)[2] = ax_calloc((size_t)count, sizeof *centre), *mouth = smallest_mouths(linkage, flat);
     for (int t = 0; t < count; ++t)
         for (int k = 0; k < 3; ++k)
             for (int d = 0; d < 2; ++d)
                 centre[t][d] += flat[linkage->triangles[t][k]][d] / 3;
     for (int t = 0; t < count; ++t) {
-        if (is_border(linkage, t))
+        const int* corner = linkage->triangles[t];
+        if (is_border(linkage, t)) {
+            scale[t] = scale_of_mouths(corner, mouth);
             continue;
+        }
         int near[3];
-        for (int k = 0; k < 3; ++k) {
-            const int* owner = owners[linkage->triangles[t][k]];
-            near[k] = owner[0] == t ? owner[1] : owner[0];
-        }
-        spacing[t] = sqrt(2 * fabs(ax_orient2(centre[near[0]], centre[near[1]], centre[near[2]])) / sqrt(3));
-        mean += spacing[t];
-        ++inner;
-    }
-    mean = inner ? mean / inner : 0;
-    // border triangles: the mean of their neighbours' spacing, in rounds from the inside out
-    unsigned char* known = AX_NEW0(unsigned char, count);
-    for (int t = 0; t < count; ++t)
-        known[t] = spacing[t] > 0;
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (int t = 0; t < count; ++t) {
-            double sum = 0;
-            int terms = 0;
-            for (int k = 0; k < 3 && !known[t]; ++k)
-                for (int side = 0; side < 2; ++side) {
-                    int o = owners[linkage->triangles[t][k]][side];
-                    if (o >= 0 && known[o] == 1)
-                        sum += spacing[o], ++terms;
-                }
-            if (terms)
-                spacing[t] = sum / terms, known[t] = 2, changed = true;
-        }
-        for (int t = 0; t < count; ++t)
-            known[t] = known[t] ? 1 : 0;
-    }
-    for (int t = 0; t < count; ++t) {
         double edge = 0;
-        for (int k = 0; k < 3; ++k)
-            edge += ax_distance2(flat[linkage->triangles[t][k]], flat[linkage->triangles[t][(k + 1) % 3]]) / 3;
-        double at = known[t] ? spacing[t] : mean;
-        scale[t] = at > 0 ? 2 * edge / at : NAN;
+        for (int k = 0; k < 3; ++k) {
+            const int* owner = owners[corner[k]];
+            near[k] = owner[0] == t ? owner[1] : owner[0];
+            edge += ax_distance2(flat[corner[k]], flat[corner[(k + 1) % 3]]) / 3;
+        }
+        scale[t] = 2 * edge / sqrt(2 * fabs(ax_orient2(centre[near[0]], centre[near[1]], centre[near[2]])) / sqrt(3));
     }
     ax_free(owners);
     ax_free(centre);
-    ax_free(spacing);
-    ax_free(known);
+    ax_free(mouth);
 }
 
 void ax_measure_hole_angles(const ax_linkage* linkage, const double (*places)[3], double out[3])

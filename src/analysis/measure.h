@@ -25,7 +25,7 @@ int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], doub
 int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2]);
 
 // Realised scale factor per triangle: twice its mean edge over the lattice spacing that its neighbours' centres show in the
-// flat state; border triangles take the spacing of their neighbours.
+// flat state; for border triangles, which lack a neighbour, the one that their mouths show.
 void ax_measure_scale(const ax_linkage* linkage, const double (*flat)[2], double* scale);
 
 // 5 %, 50 % and 95 % quantiles of the interior angles of six-hinged holes in space, degrees.

@@ -289,8 +289,6 @@ static ax_status verify(const ax_design* design, const ax_joint_result* joint, a
 static ax_status solve_states(ax_design* design, const ax_design_options* options, const ax_screen* screen,
                               const ax_progress* progress, ax_error* error)
 {
-    static const double border_weight[] = {
-        [AX_BORDER_EQUILATERAL] = 3, [AX_BORDER_RELEASED] = 0.02, [AX_BORDER_INSIDE] = 10};
     flat_domain domain;
     make_domain(&design->target, &screen->flattening, options->target.scale_lo, options->target.scale_hi, &domain);
     ax_lattice lattice = {0};
@@ -308,8 +306,9 @@ static ax_status solve_states(ax_design* design, const ax_design_options* option
         const ax_joint_problem problem = {.linkage = &design->linkage,
                                           .surface = domain.target_tree,
                                           .rim = snap ? domain.target_curve : NULL,
-                                          .border_weight = border_weight[options->border],
-                                          .mouth_min = options->mouth_min * AX_PI / 180};
+                                          .released = options->border == AX_BORDER_RELEASED,
+                                          .mouth_min = options->mouth_min * AX_PI / 180,
+                                          .scale_max = screen->scale_hi};
         ax_joint_result joint;
         double start = ax_seconds();
         status = ax_joint_solve(&problem, design->flat, design->deployed, progress, &joint, error);

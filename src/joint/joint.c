@@ -2,14 +2,20 @@
 //   equilateral  w_t (l_k^2 - l_{k+1}^2) / (2 l^2)      three per triangle, l on q
 //   surface      n . (q - c)                            c closest point, n its normal
 //   rim          (I - t t')(q - c)                      t tangent of the boundary curve
-//   fairness     (q - q0)_a - 2 (q - q0)_h + (q - q0)_b on both kagome lines through a hinge
+//   fairness     (q - q0)_i - (q - q0)_j                every edge
 //   stay         p - p0, q - q0
-//   mouth        min(beta - beta_min, 0)                one-sided, chosen again at each step
+//   mouth        min(beta - beta_aim, 0)                one-sided, chosen again at each step
 // subject to  c_e = (|p_i - p_j|^2 - |q_i - q_j|^2) / 2 = 0  for every edge.
 //
 // Each step solves the linearised KKT system by the condensed matrix S'S + mu C'C and Uzawa refinement of the multipliers:
-// one sparse Cholesky of 5 unknowns a hinge, where an LDL' of the full system would have 7 and need pivoting. A sticky active set
-// for the mouths and steps without a merit test were tried and end at congruence 0.05 to 0.3 at the ends of the scale band.
+// one sparse Cholesky of 5 unknowns a hinge, where an LDL' of the full system would have 7 and need pivoting.
+//
+// The anchor (p0, q0) of fairness and stay is the start for four steps, which finds the shape, and from then on the last
+// iterate. Held for ever it leaves multipliers as large as the soft weights, and the curvature of the constraints that
+// Gauss-Newton neglects makes convergence linear (factor 0.7, 60 steps); with multipliers near zero it is quadratic, seven
+// steps in all, and the rows that are not anchored end at rounding. Second differences along kagome lines as fairness gave the
+// same shapes at five times the cost of the factor. A sticky active set for the mouths, and steps without a merit test,
+// end at congruence 0.05 to 0.3 at the ends of the scale band.
 #include "joint/joint.h"
 
 #include "base/vec.h"
@@ -19,31 +25,32 @@
 #include <assert.h>
 #include <string.h>
 
-enum { UNKNOWNS = 5, STEPS = 60 };
-static const double weight_inner = 10, weight_surface = 3, weight_rim = 10, weight_fair = 0.03, weight_stay = 0.003,
-                    weight_mouth = 10, mouth_margin = 1.05;
+enum { UNKNOWNS = 5, STEPS = 40, ANCHORED_STEPS = 4 };
+static const double weight_inner = 10, weight_border = 3, weight_released = 0.02, weight_surface = 3, weight_rim = 10,
+                    weight_fair = 0.05, weight_stay = 0.003, weight_mouth = 10, mouth_margin = 1.05, mouth_share = 0.7,
+                    mouth_comfort = 15 * AX_PI / 180;
 
 typedef double state[UNKNOWNS]; // p0, p1, q0, q1, q2 of one hinge
 
 typedef struct solver {
     const ax_joint_problem* problem;
     const ax_linkage* linkage;
-    int hinges, triangles, edges, mouths, lines;
+    int hinges, triangles, edges, mouths;
     double unit;      // mean edge, document units
     double origin[3]; // subtracted from deployed places, so that far-away models lose no digits
     double flat_origin[2];
-    state *x, *x0, *trial, *step, *right;
+    state *x, *anchor, *trial, *step, *right;
     double *congruence, *multiplier; // per edge 3 t + k
+    bool settled;                    // the shape is found: released triangles keep the shape they have
+    double mouth_aim;                // radians: below it a mouth is pushed open
     double* weight;                  // equilateral, per triangle
     int (*mouth)[3];                 // previous, hinge, next
     unsigned char* active;           // per mouth
-    int (*line)[3];                  // a, h, b along kagome lines
     ax_closest_point* contact;       // per hinge, surface or rim
     double (*tangent)[3];            // per rim hinge, when on the curve
     unsigned char* in_pattern;       // per mouth: its outer pair is in the matrix
     ax_blocks matrix;
-    int (*block)[3];      // per triangle: block opposite each corner
-    int (*line_block)[3]; // per line: a-h, h-b, a-b
+    int (*block)[3]; // per triangle: block opposite each corner
     ax_cholesky* factor;
     int factorisations;
 } solver;
@@ -54,35 +61,12 @@ static void edge_ends(const solver* s, int e, int* i, int* j)
     *i = corner[(e + 1) % 3], *j = corner[(e + 2) % 3];
 }
 
-// Neighbours straight across each hinge: the two kagome lines through it.
-static void find_lines(solver* s)
-{
-    int(*owners)[2] = ax_linkage_hinge_triangles(s->linkage);
-    s->line = ax_alloc((size_t)s->hinges * 2, sizeof *s->line);
-    for (int h = 0; h < s->hinges; ++h) {
-        if (owners[h][1] < 0)
-            continue;
-        int corner[2] = {0, 0};
-        for (int side = 0; side < 2; ++side)
-            while (s->linkage->triangles[owners[h][side]][corner[side]] != h)
-                ++corner[side];
-        for (int k = 1; k <= 2; ++k, ++s->lines) {
-            s->line[s->lines][0] = s->linkage->triangles[owners[h][0]][(corner[0] + k) % 3];
-            s->line[s->lines][1] = h;
-            s->line[s->lines][2] = s->linkage->triangles[owners[h][1]][(corner[1] + k) % 3];
-        }
-    }
-    ax_free(owners);
-}
-
 static void build_pattern(solver* s)
 {
-    int most = s->edges + s->lines + s->mouths, count = 0;
+    int most = s->edges + s->mouths, count = 0;
     int(*pairs)[2] = ax_alloc((size_t)most, sizeof *pairs);
     for (int e = 0; e < s->edges; ++e, ++count)
         edge_ends(s, e, &pairs[count][0], &pairs[count][1]);
-    for (int k = 0; k < s->lines; ++k, ++count)
-        pairs[count][0] = s->line[k][0], pairs[count][1] = s->line[k][2];
     for (int m = 0; m < s->mouths; ++m)
         if (s->in_pattern[m])
             pairs[count][0] = s->mouth[m][0], pairs[count][1] = s->mouth[m][2], ++count;
@@ -97,9 +81,6 @@ static void build_pattern(solver* s)
         edge_ends(s, e, &i, &j);
         s->block[e / 3][e % 3] = ax_blocks_find(&s->matrix, i, j);
     }
-    for (int k = 0; k < s->lines; ++k)
-        for (int pair = 0; pair < 3; ++pair)
-            s->line_block[k][pair] = ax_blocks_find(&s->matrix, s->line[k][pair == 1], s->line[k][pair == 0 ? 1 : 2]);
     s->factor = ax_cholesky_analyse(&s->matrix.matrix, AX_FACTOR_SUPERNODAL);
 }
 
@@ -131,11 +112,6 @@ static double mouth_angle(const solver* s, const state* x, int m)
     return ax_mouth_angle(x[s->mouth[m][0]], x[s->mouth[m][1]], x[s->mouth[m][2]]);
 }
 
-static double mouth_bound(const solver* s)
-{
-    return s->problem->mouth_min * mouth_margin;
-}
-
 // Equilateral rows of a triangle: residuals r[3] and gradients with respect to the q of its corners.
 static void equilateral_rows(const solver* s, const state* x, int t, double r[3], double gradient[3][3][3])
 {
@@ -149,7 +125,7 @@ static void equilateral_rows(const solver* s, const state* x, int t, double r[3]
     double w = s->weight[t] / mean;
     for (int row = 0; row < 3; ++row) {
         int a = row, b = (row + 1) % 3;
-        r[row] = w * (l2[a] - l2[b]) / 2;
+        r[row] = s->settled && s->weight[t] == weight_released ? 0 : w * (l2[a] - l2[b]) / 2;
         if (!gradient)
             continue;
         memset(gradient[row], 0, sizeof gradient[row]);
@@ -207,19 +183,20 @@ static double objective(const solver* s, const state* x)
             contact += weight_surface * weight_surface * out * out;
         }
         for (int k = 0; k < UNKNOWNS; ++k)
-            stay += (x[h][k] - s->x0[h][k]) * (x[h][k] - s->x0[h][k]);
+            stay += (x[h][k] - s->anchor[h][k]) * (x[h][k] - s->anchor[h][k]);
     }
     double fair = 0;
-    for (int k = 0; k < s->lines; ++k)
+    for (int e = 0; e < s->edges; ++e) {
+        int i, j;
+        edge_ends(s, e, &i, &j);
         for (int c = 2; c < UNKNOWNS; ++c) {
-            const int* l = s->line[k];
-            double bend =
-                (x[l[0]][c] - s->x0[l[0]][c]) - 2 * (x[l[1]][c] - s->x0[l[1]][c]) + (x[l[2]][c] - s->x0[l[2]][c]);
-            fair += bend * bend;
+            double d = (x[i][c] - s->anchor[i][c]) - (x[j][c] - s->anchor[j][c]);
+            fair += d * d;
         }
+    }
     double mouths = 0;
     for (int m = 0; m < s->mouths; ++m) {
-        double short_of = fmin(mouth_angle(s, x, m) - mouth_bound(s), 0);
+        double short_of = fmin(mouth_angle(s, x, m) - s->mouth_aim, 0);
         mouths += short_of * short_of;
     }
     return (sum + contact + weight_stay * weight_stay * stay + weight_fair * weight_fair * fair +
@@ -279,9 +256,19 @@ static void assemble(solver* s, double mu)
         double g[UNKNOWNS];
         edge_ends(s, e, &i, &j);
         constraint_gradient(x, i, j, g);
-        add_square(s, i, g, mu);
-        add_square(s, j, g, mu);
-        add_product(s, s->block[e / 3][e % 3], i, j, g, g, -mu);
+        double block[UNKNOWNS * UNKNOWNS], w = weight_fair * weight_fair;
+        for (int r = 0; r < UNKNOWNS; ++r)
+            for (int c = 0; c < UNKNOWNS; ++c)
+                block[r * UNKNOWNS + c] = mu * g[r] * g[c] + (r == c && r >= 2 ? w : 0);
+        ax_blocks_add_diagonal(&s->matrix, i, block);
+        ax_blocks_add_diagonal(&s->matrix, j, block);
+        for (int k = 0; k < UNKNOWNS * UNKNOWNS; ++k)
+            block[k] = -block[k];
+        ax_blocks_add(&s->matrix, s->block[e / 3][e % 3], i < j ? i : j, block);
+        for (int c = 2; c < UNKNOWNS; ++c) {
+            double d = w * ((x[i][c] - s->anchor[i][c]) - (x[j][c] - s->anchor[j][c]));
+            s->right[i][c] += d, s->right[j][c] -= d;
+        }
         s->congruence[e] = constraint(s, x, e);
     }
     for (int t = 0; t < s->triangles; ++t) {
@@ -314,32 +301,9 @@ static void assemble(solver* s, double mu)
             }
         for (int k = 0; k < UNKNOWNS; ++k) {
             block[k * UNKNOWNS + k] += weight_stay * weight_stay;
-            s->right[h][k] += weight_stay * weight_stay * (x[h][k] - s->x0[h][k]);
+            s->right[h][k] += weight_stay * weight_stay * (x[h][k] - s->anchor[h][k]);
         }
         ax_blocks_add_diagonal(&s->matrix, h, block);
-    }
-    static const double bend[3] = {1, -2, 1};
-    double w = weight_fair * weight_fair;
-    for (int k = 0; k < s->lines; ++k) {
-        const int* l = s->line[k];
-        for (int pair = 0; pair < 3; ++pair) {
-            int a = pair == 1, b = pair == 0 ? 1 : 2;
-            double block[UNKNOWNS * UNKNOWNS] = {0};
-            for (int c = 2; c < UNKNOWNS; ++c)
-                block[c * UNKNOWNS + c] = w * bend[a] * bend[b];
-            ax_blocks_add(&s->matrix, s->line_block[k][pair], l[a] < l[b] ? l[a] : l[b], block);
-        }
-        for (int a = 0; a < 3; ++a) {
-            double block[UNKNOWNS * UNKNOWNS] = {0};
-            for (int c = 2; c < UNKNOWNS; ++c) {
-                block[c * UNKNOWNS + c] = w * bend[a] * bend[a];
-                double sum = 0;
-                for (int b = 0; b < 3; ++b)
-                    sum += bend[b] * (x[l[b]][c] - s->x0[l[b]][c]);
-                s->right[l[a]][c] += w * bend[a] * sum;
-            }
-            ax_blocks_add_diagonal(&s->matrix, l[a], block);
-        }
     }
     for (int m = 0; m < s->mouths; ++m) {
         if (!s->active[m])
@@ -354,7 +318,7 @@ static void assemble(solver* s, double mu)
         gradient[2][0] = b[1] / b2, gradient[2][1] = -b[0] / b2;
         for (int c = 0; c < 2; ++c)
             gradient[1][c] = -(gradient[0][c] + gradient[2][c]);
-        double r = mouth_angle(s, x, m) - mouth_bound(s), w2 = weight_mouth * weight_mouth;
+        double r = mouth_angle(s, x, m) - s->mouth_aim, w2 = weight_mouth * weight_mouth;
         for (int k = 0; k < 3; ++k) {
             add_square(s, hinge[k], gradient[k], w2);
             add_scaled(s->right[hinge[k]], gradient[k], w2 * r);
@@ -408,7 +372,7 @@ static void refresh_active(solver* s)
 {
     bool grown = false;
     for (int m = 0; m < s->mouths; ++m) {
-        s->active[m] = mouth_angle(s, (const state*)s->x, m) < mouth_bound(s);
+        s->active[m] = mouth_angle(s, (const state*)s->x, m) < s->mouth_aim;
         if (s->active[m] && !s->in_pattern[m])
             s->in_pattern[m] = 1, grown = true;
     }
@@ -441,7 +405,7 @@ static solver make(const ax_joint_problem* problem, double (*flat)[2], double (*
         for (int k = 0; k < UNKNOWNS; ++k)
             s.x[h][k] =
                 k < 2 ? (flat[h][k] - s.flat_origin[k]) / s.unit : (deployed[h][k - 2] - s.origin[k - 2]) / s.unit;
-    s.x0 = ax_copy(s.x, (size_t)n, sizeof *s.x);
+    s.anchor = ax_copy(s.x, (size_t)n, sizeof *s.x);
     s.trial = ax_alloc((size_t)n, sizeof *s.x);
     s.step = ax_alloc((size_t)n, sizeof *s.x);
     s.right = ax_alloc((size_t)n, sizeof *s.x);
@@ -451,9 +415,12 @@ static solver make(const ax_joint_problem* problem, double (*flat)[2], double (*
     for (int t = 0; t < s.triangles; ++t) {
         const int* corner = linkage->triangles[t];
         bool border = linkage->on_rim[corner[0]] || linkage->on_rim[corner[1]] || linkage->on_rim[corner[2]];
-        s.weight[t] = border && problem->rim ? problem->border_weight : weight_inner;
+        s.weight[t] = !border || !problem->rim ? weight_inner : problem->released ? weight_released : weight_border;
     }
     s.mouth = ax_linkage_mouths(linkage, &s.mouths);
+    // aim above the bound where the scale leaves room: snapping the rim costs border mouths up to 13 degrees otherwise
+    s.mouth_aim = fmax(problem->mouth_min * mouth_margin,
+                       fmin(mouth_comfort, mouth_share * 2 * (AX_PI / 3 - acos(1 / problem->scale_max))));
     s.active = AX_NEW0(unsigned char, s.mouths);
     s.in_pattern = AX_NEW0(unsigned char, s.mouths);
     s.contact = AX_NEW0(ax_closest_point, n);
@@ -461,17 +428,14 @@ static solver make(const ax_joint_problem* problem, double (*flat)[2], double (*
         s.contact[h].face = -1;
     s.tangent = ax_calloc((size_t)n, sizeof *s.tangent);
     s.block = ax_alloc((size_t)s.triangles, sizeof *s.block);
-    find_lines(&s);
-    s.line_block = ax_alloc((size_t)s.lines, sizeof *s.line_block);
     build_pattern(&s);
     return s;
 }
 
 static void release(solver* s)
 {
-    void* blocks[] = {s->x,          s->x0,     s->trial, s->step,      s->right,      s->congruence,
-                      s->multiplier, s->weight, s->mouth, s->active,    s->in_pattern, s->contact,
-                      s->tangent,    s->block,  s->line,  s->line_block};
+    void* blocks[] = {s->x,      s->anchor, s->trial,  s->step,       s->right,   s->congruence, s->multiplier,
+                      s->weight, s->mouth,  s->active, s->in_pattern, s->contact, s->tangent,    s->block};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_blocks_free(&s->matrix);
@@ -484,27 +448,26 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
     solver s = make(problem, flat, deployed);
     ax_status status = AX_OK;
     size_t bytes = (size_t)s.hinges * sizeof *s.x;
-    double previous = INFINITY, mu = 1e3, congruence = worst_congruence(&s, (const state*)s.x);
+    double mu = 1e3, longest = INFINITY, congruence = worst_congruence(&s, (const state*)s.x);
     int k = 0;
     for (; k < STEPS; ++k) {
-        if (!ax_progress_report(progress, "Solving flat and deployed state together", (double)k / STEPS, congruence)) {
+        if (!ax_progress_report(progress, "Solving flat and deployed state together", fmin(0.95, k / 8.0),
+                                congruence)) {
             status = ax_fail(error, AX_CANCELLED, "Cancelled.");
             break;
         }
+        if (congruence < 1e-12 && (longest < 1e-6 || k > 3 * ANCHORED_STEPS))
+            break;
         find_contacts(&s);
         refresh_active(&s);
-        double now = objective(&s, (const state*)s.x);
-        if (congruence < 1e-12 && fabs(previous - now) <= 1e-6 * now)
-            break;
-        previous = now;
-
         assemble(&s, mu);
         if (!ax_cholesky_factor(s.factor, &s.matrix.matrix))
             break; // rounding has eaten the stay term: keep the last good state
         ++s.factorisations;
         solve_step(&s, mu);
 
-        double longest = 0, stiffest = 0;
+        double stiffest = 0;
+        longest = 0;
         for (int h = 0; h < s.hinges; ++h)
             for (int c = 0; c < UNKNOWNS; ++c)
                 longest = fmax(longest, fabs(s.step[h][c]));
@@ -520,7 +483,12 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
         }
         memcpy(s.x, s.trial, bytes);
         congruence = worst_congruence(&s, (const state*)s.x);
-        mu = k < 2 ? 1e3 : 1e5;
+        if (k + 1 >= ANCHORED_STEPS) {
+            memcpy(s.anchor, s.x, bytes);
+            s.settled = true;
+        }
+        if (k >= 2)
+            mu = 1e5;
     }
     if (status == AX_OK)
         for (int h = 0; h < s.hinges; ++h) {

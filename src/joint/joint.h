@@ -9,8 +9,9 @@ typedef struct ax_joint_problem {
     const ax_linkage* linkage;
     const ax_closest* surface; // deployed hinges lie on it
     const ax_polyline* rim;    // rim hinges lie on this curve; NULL: they lie on the surface only
-    double border_weight; // equilateral weight of border triangles against 10 inside; 3 holds them, 0.02 releases them
-    double mouth_min;     // radians, lower bound of every mouth angle
+    bool released;             // border triangles may deviate from equilateral
+    double mouth_min;          // radians, lower bound of every mouth angle
+    double scale_max;          // largest scale factor, which tells what mouths to expect
 } ax_joint_problem;
 
 typedef struct ax_joint_result {

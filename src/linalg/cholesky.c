@@ -14,19 +14,22 @@ struct ax_cholesky {
     ax_cholesky_counters counters;
 };
 
-// Results must not depend on the number of cores, and at our sizes threads cost more than they give: whichever BLAS is
-// linked is told to use one thread, and so is the OpenMP run-time inside CHOLMOD. The latter's setting belongs to the
-// calling thread, so it is made again at each call.
+// Results must not depend on the number of cores, and at our sizes threads cost more than they give. BLAS is told to use one
+// thread; CHOLMOD asks OpenMP for four by name, which only forbidding parallel regions can overrule. That setting
+// belongs to the calling thread, so it is made again at each call.
 static void hold_to_one_thread(void)
 {
-    static const char* const names[] = {"omp_set_num_threads", "openblas_set_num_threads",
-                                        "bli_thread_set_num_threads"};
-    for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
-        void* symbol = dlsym(RTLD_DEFAULT, names[k]);
+    static const struct {
+        const char* function;
+        int argument;
+    } settings[] = {
+        {"omp_set_max_active_levels", 0}, {"openblas_set_num_threads", 1}, {"bli_thread_set_num_threads", 1}};
+    for (size_t k = 0; k < sizeof settings / sizeof *settings; ++k) {
+        void* symbol = dlsym(RTLD_DEFAULT, settings[k].function);
         void (*set)(int);
         memcpy(&set, &symbol, sizeof set);
         if (symbol)
-            set(1);
+            set(settings[k].argument);
     }
 }
 
