@@ -157,7 +157,7 @@ static bool check_obj_face(span line, long number, obj* seen, inspection* found)
 {
     int corners = 0;
     for (span word; next_word(&line, &word); ++corners) {
-        if (is(word, "\\"))
+        if (length(word) == 1 && *word.at == '\\')
             return true; // goes on in the next line: left to the importer
         int64_t vertex;
         if (*word.at == '#')

@@ -82,6 +82,8 @@ static const struct aiScene* import(const char* path)
         stop(ax_reader_bad_input,
              "It is in no format that can be read. Export the mesh as OBJ, STL, PLY or OFF; the ending of "
              "the name tells which it is.");
+    if (strstr(reason, "bad_alloc"))
+        stop(ax_reader_failed, "No more memory.");
     stop(ax_reader_bad_input, "It cannot be read as a mesh (%.300s). Export it again, as OBJ, STL, PLY or OFF.",
          *reason ? reason : "the importer gives no reason");
 }
@@ -176,8 +178,8 @@ static void check_precision(const instances* all)
             double x[3];
             position(&all->items[i], v, x);
             for (int d = 0; d < 3; ++d) {
-                lo[d] = fmin(lo[d], x[d]);
-                hi[d] = fmax(hi[d], x[d]);
+                lo[d] = x[d] < lo[d] ? x[d] : lo[d];
+                hi[d] = x[d] > hi[d] ? x[d] : hi[d];
             }
         }
     for (int d = 0; d < 3; ++d) {
@@ -192,22 +194,42 @@ static void check_precision(const instances* all)
              sqrt(square), reach, reach * 0x1p-23);
 }
 
-static void put(const void* data, size_t bytes)
+// Standard output, in large pieces.
+typedef struct sink {
+    size_t used;
+    char bytes[1 << 18];
+} sink;
+
+static void flush(sink* out)
 {
-    if (fwrite(data, 1, bytes, stdout) != bytes)
-        _exit(ax_reader_failed); // the reader at the other end has gone
+    for (size_t done = 0; done < out->used;) {
+        ssize_t written = write(STDOUT_FILENO, out->bytes + done, out->used - done);
+        if (written < 0 && errno != EINTR)
+            _exit(ax_reader_failed); // the receiver has gone
+        done += written > 0 ? (size_t)written : 0;
+    }
+    out->used = 0;
+}
+
+static void put(sink* out, const void* data, size_t size)
+{
+    if (out->used + size > sizeof out->bytes)
+        flush(out);
+    memcpy(out->bytes + out->used, data, size);
+    out->used += size;
 }
 
 static void send(const instances* all, ax_vertex_order order)
 {
+    static sink out;
     ax_stream_header header = {.order = order, .vertex_count = all->vertices, .face_count = all->faces};
     memcpy(header.magic, ax_stream_magic, sizeof header.magic);
-    put(&header, sizeof header);
+    put(&out, &header, sizeof header);
     for (size_t i = 0; i < all->count; ++i)
         for (unsigned v = 0; v < all->items[i].mesh->mNumVertices; ++v) {
             double x[3];
             position(&all->items[i], v, x);
-            put(x, sizeof x);
+            put(&out, x, sizeof x);
         }
     int32_t first = 0;
     for (size_t i = 0; i < all->count; ++i) {
@@ -217,13 +239,12 @@ static void send(const instances* all, ax_vertex_order order)
                 int32_t face[3];
                 for (int k = 0; k < 3; ++k)
                     face[k] = first + (int32_t)mesh->mFaces[f].mIndices[k];
-                put(face, sizeof face);
+                put(&out, face, sizeof face);
             }
         first += (int32_t)mesh->mNumVertices;
     }
-    put(ax_stream_end, sizeof ax_stream_end);
-    if (fflush(stdout) != 0)
-        _exit(ax_reader_failed);
+    put(&out, ax_stream_end, sizeof ax_stream_end);
+    flush(&out);
 }
 
 int main(int argc, char** argv)
@@ -252,8 +273,6 @@ int main(int argc, char** argv)
         stop(ax_reader_bad_input, "It has %llu triangles, and at most %d can be read. Reduce the mesh.",
              (unsigned long long)all.faces, ax_stream_most_faces);
     check_precision(&all);
-    static char buffer[1 << 18];
-    setvbuf(stdout, buffer, _IOFBF, sizeof buffer);
     send(&all, order);
     _exit(ax_reader_done); // taking the scene apart again would take as long as writing it
 }

@@ -146,7 +146,8 @@ static void drop_unused_vertices(work* k)
     for (int f = 0; f < mesh->face_count; ++f)
         for (int c = 0; c < 3; ++c)
             mesh->faces[f][c] = place[mesh->faces[f][c]];
-    k->repairs.unused_vertices += mesh->vertex_count - kept;
+    if (k->order != AX_VERTICES_SPLIT) // else they are the importer's
+        k->repairs.unused_vertices += mesh->vertex_count - kept;
     mesh->vertex_count = kept;
     ax_free(place);
 }
@@ -163,14 +164,14 @@ static uint64_t mix(uint64_t a, uint64_t b, uint64_t c)
 // Vertices that stay are more than the tolerance apart and sit in a hashed grid; each further vertex joins the one it finds within
 // the tolerance. Cells are some tolerances wide, so that most vertices look into one cell and none holds many.
 typedef struct grid {
-    double origin[3], cell;
+    double origin[3], per_cell;
     uint64_t mask;
     int *head, *next;
 } grid;
 
 static int64_t cell_of(const grid* g, int d, double x)
 {
-    return (int64_t)floor((x - g->origin[d]) / g->cell);
+    return (int64_t)floor((x - g->origin[d]) * g->per_cell);
 }
 
 static int find_near(const grid* g, const double (*positions)[3], const double x[3], double tolerance)
@@ -197,7 +198,7 @@ static void weld(work* k)
     uint64_t size = 1;
     while (size < (uint64_t)n)
         size *= 2;
-    grid g = {.cell = 8 * k->tolerance, .mask = size - 1, .head = AX_NEW(int, size), .next = AX_NEW(int, n)};
+    grid g = {.per_cell = 1 / (32 * k->tolerance), .mask = size - 1, .head = AX_NEW(int, size), .next = AX_NEW(int, n)};
     double hi[3];
     ax_bounds(mesh, g.origin, hi);
     memset(g.head, 0xff, size * sizeof *g.head);
@@ -485,7 +486,7 @@ static ax_status orient(work* k, const int* pair)
 {
     ax_mesh* mesh = k->mesh;
     int count = mesh->face_count, flipped = 0, conflict = -1;
-    signed char* sign = (signed char*)AX_NEW0(unsigned char, count);
+    signed char* sign = AX_NEW0(signed char, count);
     int* queue = AX_NEW(int, count);
     for (int seed = 0; seed < count && conflict < 0; ++seed) {
         if (sign[seed])

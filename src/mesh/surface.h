@@ -6,7 +6,7 @@
 typedef enum ax_vertex_order {
     AX_VERTICES_NUMBERED, // as in the file, so messages may give their numbers
     AX_VERTICES_REPEATED, // the format repeats them for every triangle: no numbers
-    AX_VERTICES_SPLIT,    // the importer repeated them: no numbers, and merging identical ones again is no repair
+    AX_VERTICES_SPLIT,    // the importer repeated them: no numbers, and undoing that is no repair
 } ax_vertex_order;
 
 ax_status ax_surface_make(ax_mesh* mesh, ax_vertex_order order, ax_mesh_repairs* repairs, ax_error* error);
