@@ -1,0 +1,36 @@
+#include "picture/colour.h"
+
+#include "base/vec.h"
+
+#include <stdbool.h>
+
+enum { STOPS = 9 };
+
+static const unsigned tide[STOPS] = {0x31357d, 0x2e5292, 0x216e9b, 0x24899e, 0x36a39b,
+                                     0x62b88f, 0x9ac77c, 0xccd77a, 0xfbe786};
+static const unsigned level[STOPS] = {0x17397b, 0x3064a4, 0x5990c7, 0x9ab8d8, 0xe4dcd6,
+                                      0xe1ae8c, 0xdb7b40, 0xb0512b, 0x862919};
+static const unsigned no_value = 0x9aa1ad;
+
+// The stops are close enough to each other for straight lines in sRGB, which is what a browser's gradient draws too.
+static void look_up(const unsigned stops[STOPS], double place, double rgb[3])
+{
+    bool known = !isnan(place);
+    double t = known ? ax_clamp(place, 0, 1) * (STOPS - 1) : 0;
+    int k = t < STOPS - 1 ? (int)t : STOPS - 2;
+    unsigned low = known ? stops[k] : no_value, high = known ? stops[k + 1] : no_value;
+    for (int c = 0, shift = 16; c < 3; ++c, shift -= 8) {
+        double a = (low >> shift & 255) / 255.0, b = (high >> shift & 255) / 255.0;
+        rgb[c] = a + (b - a) * (t - k);
+    }
+}
+
+void ax_colour_scale(double lambda, double rgb[3])
+{
+    look_up(tide, lambda - 1, rgb);
+}
+
+void ax_colour_level(double value, double rgb[3])
+{
+    look_up(level, (value + 1) / 2, rgb);
+}
