@@ -63,11 +63,11 @@ ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind)
                                 [AX_FACTOR_SIMPLICIAL] = CHOLMOD_SIMPLICIAL,
                                 [AX_FACTOR_ONCE] = CHOLMOD_AUTO};
     common->supernodal = modes[kind];
-    // Measured on Laplacians of surfaces: below some 160 operations per entry (about 100,000 unknowns) columns are
-    // quicker than dense blocks; CHOLMOD's own choice is 40.
-    common->supernodal_switch = 160;
+    // Measured on Laplacians of surfaces: below some 80 operations per entry (10,000 to 20,000 unknowns) columns are quicker
+    // than dense blocks; CHOLMOD's own choice is 40.
+    common->supernodal_switch = 80;
     // Nested dissection (METIS) saves at most a fifth of the factorisation on surface meshes of up to 500,000 vertices, but
-    // takes ten times as long as AMD to compute: 2.1 s against 0.2 s there, for a factorisation of 1.4 s.
+    // takes four to ten times as long as AMD to compute: 2.1 to 3 s against 0.2 to 0.7 s there, for a factorisation of 0.7 s.
     common->nmethods = 1;
     common->method[0].ordering = CHOLMOD_AMD;
     common->postorder = 1;
