@@ -20,6 +20,9 @@ typedef struct ax_linkage {
 void ax_linkage_free(ax_linkage* linkage);
 ax_linkage ax_linkage_copy(const ax_linkage* linkage);
 
-// Short name of a panel for people, e.g. "C14" (row letters, then the place within the row); stable like the panel itself.
-// `text` holds at least 16 characters.
+// Largest magnitude of a panel's column and row, so that its name fits.
+#define AX_PANEL_LIMIT 10000000
+
+// Short name of a panel for people, e.g. "C14": row letters, then the place within the row, each with a minus before the
+// lattice's origin ("-B-3"). Unique, and stable like the panel itself. `text` holds at least 16 characters.
 void ax_panel_name(const ax_linkage* linkage, int triangle, char text[16]);
