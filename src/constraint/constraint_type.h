@@ -1,0 +1,91 @@
+// A constraint type: one file in src/constraint/types, found by the build, named by its file.
+//
+// A constraint sees rows y = A x of the points it binds and returns the nearest rows p that satisfy it (Bouaziz et al. 2012,
+// Shape-Up; 2014, Projective Dynamics). Which rows, is one of a few patterns below, so the solver's matrix depends on the
+// pattern and the weight alone and never on a parameter: changing a length, a target or a curve factorises nothing. Rows are in
+// absolute lengths for the same reason.
+//
+// AX_W constraints of one type and one number of points are projected side by side, structure of arrays: [row][x, y, z][lane].
+// A type is pure arithmetic on lanes: no allocation, no state, finite rows for every finite input, no lane sees another.
+#pragma once
+
+#include "base/vec.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { AX_W = 8, AX_MOST_POINTS = 64 };
+typedef double ax_lane[AX_W];
+typedef ax_lane ax_lane3[3]; // x, y, z of one row, AX_W constraints side by side
+
+typedef enum ax_row_pattern {
+    AX_ROWS_POINTS,  // n rows: the points themselves
+    AX_ROWS_CENTRED, // n rows: the points minus their mean (the constraint does not care where it is)
+    AX_ROWS_EDGES,   // n / 2 rows: x1 - x0, x3 - x2, ...
+    AX_ROWS_SUM,     // 1 row: the sum of coefficient[k] x_k, coefficients of the type
+} ax_row_pattern;
+
+// What must hold for every instance of a type; the contract test checks it.
+enum { AX_SYMMETRY_TRANSLATION = 1, AX_SYMMETRY_ROTATION = 2, AX_SYMMETRY_SCALE = 4 };
+
+// One parameter of a type. `lanes` doubles per constraint starting at lane `offset` of its block.
+typedef struct ax_parameter {
+    const char *name, *unit, *doc; // unit: "1", "length", "rad"
+    double standard, least, most;  // default and range
+    int offset, lanes;
+} ax_parameter;
+
+// Geometry shared by many constraints of one group (a curve, a surface, a symmetry): nearest place on it. Thread safe, pure.
+typedef struct ax_place {
+    void (*nearest)(const void* geometry, const double x[3], double out[3]);
+    const void* geometry; // borrowed
+} ax_place;
+
+typedef struct ax_constraint_type {
+    const char *name, *doc, *reference; // key in recipes, tool tip, paper
+    ax_row_pattern pattern;
+    int least_points, most_points;
+    int symmetry;
+    int lanes; // of parameters per block of AX_W constraints: parameter k of constraint l is block[k][l]
+    const ax_parameter* parameters;
+    int parameter_count;
+    const double* coefficient; // AX_ROWS_SUM: most_points of them
+    // Fills a constraint's lane from its points at rest (AX_W lanes; NULL where the type has nothing to learn from them).
+    void (*rest)(ax_lane* restrict block, int points, const ax_lane3* restrict x);
+    // p = nearest admissible rows to y. `place` is the group's geometry, NULL for types without one.
+    void (*project)(const ax_lane* restrict block, const ax_place* place, int points, const ax_lane3* restrict y,
+                    ax_lane3* restrict p);
+} ax_constraint_type;
+
+// Number of rows of a constraint on `points` points.
+static inline int ax_row_count(const ax_constraint_type* type, int points)
+{
+    switch (type->pattern) {
+    case AX_ROWS_POINTS:
+    case AX_ROWS_CENTRED:
+        return points;
+    case AX_ROWS_EDGES:
+        return points / 2;
+    default:
+        return 1;
+    }
+}
+
+// Entry of A: how much of point `point` is in row `row`.
+static inline double ax_row_coefficient(const ax_constraint_type* type, int points, int row, int point)
+{
+    switch (type->pattern) {
+    case AX_ROWS_POINTS:
+        return row == point;
+    case AX_ROWS_CENTRED:
+        return (row == point) - 1.0 / points;
+    case AX_ROWS_EDGES:
+        return point == 2 * row + 1 ? 1 : point == 2 * row ? -1 : 0;
+    default:
+        return type->coefficient[point];
+    }
+}
+
+// All types, in order of their names, written by the build; and one by name, NULL if there is none.
+const ax_constraint_type* const* ax_constraint_types(int* count);
+const ax_constraint_type* ax_constraint_find(const char* name);

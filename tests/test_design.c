@@ -1,0 +1,249 @@
+// The main job on analytic surfaces: every figure of the report within what is promised, judged from the states.
+#include "analysis/measure.h"
+#include "ax/design.h"
+#include "base/vec.h"
+#include "support/shapes.h"
+#include "support/test.h"
+
+#include <string.h>
+
+static ax_design design_cap(int triangles, ax_border border, ax_load_kind load)
+{
+    ax_mesh target = shape_cap(24, 0.9);
+    ax_design_options options = ax_design_options_default();
+    options.triangles = triangles;
+    options.border = border;
+    options.load.kind = load;
+    ax_design design;
+    ax_error error = {0};
+    if (ax_design_from_target(&target, &options, NULL, &design, &error) != AX_OK)
+        fail_msg("%s", error.message);
+    ax_mesh_free(&target);
+    return design;
+}
+
+static void a_spherical_cap_becomes_a_proven_linkage(void** state)
+{
+    (void)state;
+    for (int kind = AX_LOAD_GRAVITY; kind <= AX_LOAD_INFLATION; ++kind) {
+        ax_design d = design_cap(300, AX_BORDER_EQUILATERAL, (ax_load_kind)kind);
+        const ax_report* r = &d.report;
+        assert_near(d.linkage.triangle_count, 300, 15);
+        assert_at_most(r->congruence_max, 1e-9);
+        assert_at_most(r->equilateral_inner_max, 1e-9);
+        assert_at_most(r->equilateral_border_max, 1e-9);
+        assert_at_most(r->surface_max_over_L, 1e-6);
+        assert_at_most(r->rim_max_over_L, 1e-6);
+        assert_at_most(r->cover_p99_over_L, 0.9);
+        assert_int_equal(r->flipped_flat, 0);
+        assert_int_equal(r->overlap_pairs, 0);
+        assert_true(r->mouth_min_deg >= 10);
+        assert_true(r->simulated && r->stable);
+        assert_at_most(r->simulated_edge_error_max, 1e-10);
+        assert_at_most(r->force_residual, 1e-10);
+        assert_at_most(r->simulated_rms_over_L, kind == AX_LOAD_GRAVITY ? 0.06 : 0.02);
+        // the sphere's own scale: lambda = c 2 / (1 + rho^2), so the range is 1 / cos^2(angle / 2)
+        assert_near(d.scale_ratio, 1 / pow(cos(0.45), 2), 2e-3);
+        ax_design_free(&d);
+    }
+}
+
+static void whole_panels_inside_and_released_borders_are_exact_too(void** state)
+{
+    (void)state;
+    ax_design inside = design_cap(300, AX_BORDER_INSIDE, AX_LOAD_INFLATION);
+    assert_at_most(inside.report.congruence_max, 1e-9);
+    assert_at_most(inside.report.equilateral_border_max, 1e-9);
+    assert_int_equal(inside.report.overlap_pairs, 0);
+    assert_true(inside.report.rim_max_over_L > 0.01); // the rim is free of the curve
+    ax_design_free(&inside);
+
+    ax_design released = design_cap(300, AX_BORDER_RELEASED, AX_LOAD_INFLATION);
+    assert_at_most(released.report.congruence_max, 1e-9);
+    assert_at_most(released.report.equilateral_inner_max, 1e-4);
+    assert_true(released.report.equilateral_border_max > 0.01);
+    assert_at_most(released.report.rim_max_over_L, 2e-3);
+    assert_int_equal(released.report.overlap_pairs, 0);
+    ax_design_free(&released);
+}
+
+static void simulation_reads_nothing_of_the_deployed_interior(void** state)
+{
+    (void)state;
+    ax_design d = design_cap(150, AX_BORDER_EQUILATERAL, AX_LOAD_INFLATION);
+    size_t bytes = (size_t)d.linkage.hinge_count * sizeof *d.simulated;
+    double(*first)[3] = ax_copy(d.simulated, (size_t)d.linkage.hinge_count, sizeof *first);
+    double(*forces)[3] = ax_copy(d.edge_forces, (size_t)d.linkage.triangle_count, sizeof *forces);
+    for (int h = 0; h < d.linkage.hinge_count; ++h)
+        if (!d.supports[h])
+            d.deployed[h][0] = 1e3 * sin(h), d.deployed[h][1] = NAN, d.deployed[h][2] = -7;
+    ax_load load = d.load;
+    assert_int_equal(ax_design_simulate(&d, &load, NULL, NULL), AX_OK);
+    assert_memory_equal(first, d.simulated, bytes);
+    assert_memory_equal(forces, d.edge_forces, (size_t)d.linkage.triangle_count * sizeof *forces);
+    ax_free(first);
+    ax_free(forces);
+    ax_design_free(&d);
+}
+
+static void the_same_options_give_the_same_bits(void** state)
+{
+    (void)state;
+    ax_design a = design_cap(200, AX_BORDER_EQUILATERAL, AX_LOAD_GRAVITY);
+    ax_design b = design_cap(200, AX_BORDER_EQUILATERAL, AX_LOAD_GRAVITY);
+    size_t n = (size_t)a.linkage.hinge_count;
+    assert_int_equal(a.linkage.hinge_count, b.linkage.hinge_count);
+    assert_memory_equal(a.flat, b.flat, n * sizeof *a.flat);
+    assert_memory_equal(a.deployed, b.deployed, n * sizeof *a.deployed);
+    assert_memory_equal(a.simulated, b.simulated, n * sizeof *a.simulated);
+    ax_design_free(&a);
+    ax_design_free(&b);
+}
+
+static void real_loads_scale_forces_and_nothing_else(void** state)
+{
+    (void)state;
+    ax_design d = design_cap(150, AX_BORDER_EQUILATERAL, AX_LOAD_INFLATION);
+    size_t n = (size_t)d.linkage.hinge_count;
+    double(*before)[3] = ax_copy(d.simulated, n, sizeof *before), most = d.report.edge_force_max;
+    ax_load load = d.load;
+    load.pressure *= 50;
+    assert_int_equal(ax_design_simulate(&d, &load, NULL, NULL), AX_OK);
+    assert_memory_equal(before, d.simulated, n * sizeof *before);
+    assert_near(d.report.edge_force_max / most, 50, 1e-9);
+
+    // gravity: the load is density times panel area times g, whatever the document's unit
+    load = (ax_load){.kind = AX_LOAD_GRAVITY, .direction = {0, 0, 1}, .density = 4};
+    assert_int_equal(ax_design_simulate(&d, &load, NULL, NULL), AX_OK);
+    assert_near(d.report.load_total, 4 * 9.80665 * d.report.panel_area, 1e-9 * d.report.load_total);
+    d.unit = AX_MILLIMETRE;
+    assert_int_equal(ax_design_simulate(&d, &load, NULL, NULL), AX_OK);
+    assert_near(d.report.load_total, 4e-6 * 9.80665 * d.report.panel_area, 1e-9 * d.report.load_total);
+    ax_free(before);
+    ax_design_free(&d);
+}
+
+static void supports_are_chosen_in_words(void** state)
+{
+    (void)state;
+    ax_design d = design_cap(150, AX_BORDER_EQUILATERAL, AX_LOAD_INFLATION);
+    int rim = 0, third = 0;
+    ax_error error;
+    for (int h = 0; h < d.linkage.hinge_count; ++h)
+        rim += d.supports[h];
+    assert_int_equal(ax_design_set_supports(&d, "rim/3", &error), AX_OK);
+    assert_null(d.simulated); // it belonged to other supports
+    for (int h = 0; h < d.linkage.hinge_count; ++h)
+        third += d.supports[h];
+    assert_int_equal(third, (rim + 2) / 3);
+    assert_int_equal(ax_design_set_supports(&d, "0-4,7", &error), AX_OK);
+    for (int h = 0; h < d.linkage.hinge_count; ++h)
+        assert_int_equal(d.supports[h], h <= 4 || h == 7);
+    const char* wrong[] = {"", "all", "1,,2", "5-2", "0-99999", "rim/0", "3,", "-1"};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+        assert_int_equal(ax_design_set_supports(&d, wrong[k], &error), AX_USAGE);
+        assert_true(d.supports[7]); // unchanged
+    }
+    assert_int_equal(ax_design_set_supports(&d, "3,9", &error), AX_OK);
+    ax_load load = d.load;
+    assert_int_equal(ax_design_simulate(&d, &load, NULL, &error), AX_USAGE);
+    assert_non_null(strstr(error.message, "three"));
+    ax_design_free(&d);
+}
+
+static void a_shell_held_at_every_other_rim_hinge_hangs_in_balance(void** state)
+{
+    (void)state;
+    ax_design d = design_cap(150, AX_BORDER_EQUILATERAL, AX_LOAD_GRAVITY);
+    assert_int_equal(ax_design_set_supports(&d, "rim/2", NULL), AX_OK);
+    ax_load load = d.load;
+    ax_error error = {0};
+    if (ax_design_simulate(&d, &load, NULL, &error) != AX_OK)
+        fail_msg("%s", error.message);
+    assert_at_most(d.report.force_residual, 1e-10);
+    assert_at_most(d.report.simulated_edge_error_max, 1e-10);
+    ax_design_free(&d);
+}
+
+static void far_away_and_small_models_lose_nothing(void** state)
+{
+    (void)state;
+    ax_mesh target = shape_paraboloid(20, 0.4);
+    for (int v = 0; v < target.vertex_count; ++v) {
+        for (int c = 0; c < 3; ++c)
+            target.positions[v][c] *= 1e-2;
+        target.positions[v][0] += 350, target.positions[v][1] -= 120, target.positions[v][2] += 40;
+    }
+    ax_design_options options = ax_design_options_default();
+    options.triangles = 200;
+    ax_design d;
+    ax_error error = {0};
+    if (ax_design_from_target(&target, &options, NULL, &d, &error) != AX_OK)
+        fail_msg("%s", error.message);
+    assert_at_most(d.report.congruence_max, 1e-9);
+    assert_at_most(d.report.surface_max_over_L, 1e-4);
+    assert_true(d.report.simulated);
+    assert_near(d.deployed[0][0], 350, 0.02); // coordinates are the target's own
+    ax_mesh_free(&target);
+    ax_design_free(&d);
+}
+
+static void impossible_wishes_are_refused_by_name(void** state)
+{
+    (void)state;
+    ax_mesh hemisphere = shape_cap(20, AX_PI / 2), cap = shape_cap(20, 0.9);
+    ax_design_options options = ax_design_options_default();
+    ax_design d;
+    ax_error error;
+    assert_int_equal(ax_design_from_target(&hemisphere, &options, NULL, &d, &error), AX_CANNOT_REALISE);
+    assert_non_null(strstr(error.message, "2.0"));
+    assert_null(d.flat);
+    options.triangles = 3;
+    assert_int_equal(ax_design_from_target(&cap, &options, NULL, &d, &error), AX_USAGE);
+    options = ax_design_options_default();
+    options.target.scale_lo = 1.5, options.target.scale_hi = 1.2;
+    assert_int_equal(ax_design_from_target(&cap, &options, NULL, &d, &error), AX_USAGE);
+    options = ax_design_options_default();
+    options.edge = 1e-6;
+    assert_int_equal(ax_design_from_target(&cap, &options, NULL, &d, &error), AX_USAGE);
+    assert_null(d.flat);
+    ax_mesh_free(&hemisphere);
+    ax_mesh_free(&cap);
+}
+
+static void the_hemisphere_is_reached_at_the_very_limit(void** state)
+{
+    (void)state;
+    ax_mesh hemisphere = shape_cap(30, AX_PI / 2);
+    ax_design_options options = ax_design_options_default();
+    options.target.scale_lo = 1, options.target.scale_hi = 2;
+    options.border = AX_BORDER_INSIDE;
+    ax_design d;
+    ax_error error = {0};
+    if (ax_design_from_target(&hemisphere, &options, NULL, &d, &error) != AX_OK)
+        fail_msg("%s", error.message);
+    assert_at_most(d.report.congruence_max, 1e-9);
+    assert_int_equal(d.report.overlap_pairs, 0);
+    assert_at_most(d.report.force_residual, 1e-10);
+    assert_at_most(d.report.simulated_rms_over_L, 0.01);
+    assert_true(d.report.mouth_min_deg >= 2);
+    ax_mesh_free(&hemisphere);
+    ax_design_free(&d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_spherical_cap_becomes_a_proven_linkage),
+        cmocka_unit_test(whole_panels_inside_and_released_borders_are_exact_too),
+        cmocka_unit_test(simulation_reads_nothing_of_the_deployed_interior),
+        cmocka_unit_test(the_same_options_give_the_same_bits),
+        cmocka_unit_test(real_loads_scale_forces_and_nothing_else),
+        cmocka_unit_test(supports_are_chosen_in_words),
+        cmocka_unit_test(a_shell_held_at_every_other_rim_hinge_hangs_in_balance),
+        cmocka_unit_test(far_away_and_small_models_lose_nothing),
+        cmocka_unit_test(impossible_wishes_are_refused_by_name),
+        cmocka_unit_test(the_hemisphere_is_reached_at_the_very_limit),
+    };
+    return cmocka_run_group_tests_name("design", tests, NULL, NULL);
+}
