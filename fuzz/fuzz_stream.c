@@ -22,8 +22,8 @@ static bool take(void* context, void* into, size_t size)
     return true;
 }
 
-// The magic, the counts in bounds that inputs can reach, and the end are put in place most of the time, so that the fuzzer need not
-// guess them.
+// The magic, the counts in bounds that inputs can reach, and the end are put in place most of the time, so that the
+// fuzzer need not guess them.
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
     uint8_t* stream = malloc(size ? size : 1);

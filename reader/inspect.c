@@ -21,7 +21,7 @@ static bool fault(inspection* found, const char* format, ...)
     return false;
 }
 
-// --- words and numbers -------------------------------------------------------------------------------------------------
+// --- words and numbers -----------------------------------------------------------------------------------------------
 
 typedef struct span {
     const char *at, *end;
@@ -145,7 +145,7 @@ static bool check_point(span* line, long number, inspection* found)
     return true;
 }
 
-// --- OBJ ---------------------------------------------------------------------------------------------------------------
+// --- OBJ -------------------------------------------------------------------------------------------------------------
 
 typedef struct obj {
     int64_t vertices, faces;
@@ -208,7 +208,7 @@ static bool inspect_obj(span data, inspection* found)
     return true;
 }
 
-// --- STL ---------------------------------------------------------------------------------------------------------------
+// --- STL -------------------------------------------------------------------------------------------------------------
 
 static bool inspect_stl_text(span data, inspection* found)
 {
@@ -270,7 +270,7 @@ static bool inspect_stl(span data, inspection* found)
                  (unsigned long long)expected, size, cut_off);
 }
 
-// --- PLY ---------------------------------------------------------------------------------------------------------------
+// --- PLY -------------------------------------------------------------------------------------------------------------
 
 typedef enum ply_format { ply_unknown, ply_text, ply_little, ply_big } ply_format;
 
@@ -507,7 +507,7 @@ static bool inspect_ply(span data, inspection* found)
     return fault(found, "Its header declares neither text nor binary format. Export the mesh as PLY again.");
 }
 
-// --- OFF ---------------------------------------------------------------------------------------------------------------
+// --- OFF -------------------------------------------------------------------------------------------------------------
 
 // The next line that is not empty, without its comment.
 static bool next_off_line(text* t, span* line)

@@ -1,5 +1,5 @@
-// Looks through an OBJ, STL, PLY or OFF file for what importers pass over in silence or report without a place: a file that
-// breaks off, corners that do not exist, numbers that are none.
+// Looks through an OBJ, STL, PLY or OFF file for what importers pass over in silence or report without a place: a file
+// that breaks off, corners that do not exist, numbers that are none.
 #pragma once
 
 #include <stdbool.h>

@@ -1,5 +1,6 @@
-// auxshell-read-mesh BYTES SECONDS FILE: parses a mesh file with assimp under limits on memory and processor time, and writes its
-// triangles to standard output as mesh/stream.h describes. What is wrong with the file goes to standard error, as sentences.
+// auxshell-read-mesh BYTES SECONDS FILE: parses a mesh file with assimp under limits on memory and processor time, and
+// writes its triangles to standard output as mesh/stream.h describes. What is wrong with the file goes to standard
+// error, as sentences.
 #include "inspect.h"
 #include "mesh/stream.h"
 

@@ -1,4 +1,5 @@
-// Reading mesh files: every format gives the same surface, every fault is named, and nothing that a file does stops the program.
+// Reading mesh files: every format gives the same surface, every fault is named, and nothing that a file does stops the
+// program.
 #include "base/clock.h"
 #include "mesh/geometry.h"
 

@@ -1,4 +1,5 @@
-// From triangles in memory to a surface: what is mended, what is refused, and that nothing depends on how the input is arranged.
+// From triangles in memory to a surface: what is mended, what is refused, and that nothing depends on how the input is
+// arranged.
 #include "base/clock.h"
 #include "base/random.h"
 #include "base/vec.h"
@@ -211,8 +212,8 @@ static void size_and_place_do_not_matter(void** state)
     ax_mesh_free(&dome);
 }
 
-// A tent of four faces round vertex 0, `between` more vertices on edge 0-1 or on the rim edge 1-2, and as many triangles without area
-// between the face that knows of them, or the outside, and the one that does not.
+// A tent of four faces round vertex 0, `between` more vertices on edge 0-1 or on the rim edge 1-2, and as many
+// triangles without area between the face that knows of them, or the outside, and the one that does not.
 static ax_mesh tent(int between, bool on_rim)
 {
     ax_mesh mesh = {.vertex_count = 5 + between, .face_count = 0};
@@ -275,7 +276,8 @@ static void heaps_of_faces_without_area_dissolve(void** state)
         }
 }
 
-// Everything meets in one vertex, everything lies in one plane, everything is there three times: no step may be quadratic.
+// Everything meets in one vertex, everything lies in one plane, everything is there three times: no step may be
+// quadratic.
 static void a_million_slivers_round_one_vertex_take_seconds(void** state)
 {
     (void)state;

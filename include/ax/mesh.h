@@ -16,7 +16,7 @@ ax_mesh ax_mesh_copy(const ax_mesh* mesh);
 // What was mended while reading, each a count; none of these is an error by itself.
 typedef struct ax_mesh_repairs {
     int welded_vertices;  // vertices closer than 1e-7 of the diagonal, merged
-    int degenerate_faces; // faces without area, dropped
+    int degenerate_faces; // faces without area: dropped, or taken in by the neighbour on their long side
     int duplicate_faces;  // the same three vertices again, dropped
     int unused_vertices;  // in no face, dropped
     int flipped_faces;    // turned to agree with their neighbours
@@ -30,13 +30,15 @@ typedef struct ax_read_limits {
 } ax_read_limits;
 ax_read_limits ax_read_limits_default(void); // 120 s, 6 GiB
 
-// Reads a surface that can become a linkage: OBJ, STL, PLY, OFF and whatever else the importer knows, chosen by content and
-// ending. Welds, drops what has no area, orients, and validates: one part, manifold, orientable, one boundary loop.
-// AX_BAD_INPUT names the fault and its place (vertex, face or edge with coordinates) and how to mend it;
-// AX_CANNOT_REALISE names a sound mesh of a kind that is not handled (several boundary loops).
-// `repairs` may be NULL. On failure `mesh` is empty.
+// Reads a surface that can become a linkage: OBJ, STL, PLY, OFF and whatever else the importer knows, chosen by content
+// and ending. Coordinates have single precision, as the importer keeps them. The file is parsed by the program
+// auxshell-read-mesh, in a process of its own that is gone when this returns. NULL limits: the defaults. Welds, drops
+// what has no area, orients, and validates: one part, manifold, orientable, one boundary loop. AX_BAD_INPUT names the
+// fault and its place (vertex, face or edge with coordinates) and how to mend it; AX_CANNOT_REALISE names a sound mesh
+// of a kind that is not handled (several boundary loops). `repairs` may be NULL. On failure `mesh` is empty.
 ax_status ax_mesh_read(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_mesh_repairs* repairs,
                        ax_error* error);
 
-// The same from arrays in memory, for meshes that a program makes: welds, drops, orients, validates in place.
+// The same from arrays in memory, for meshes that a program makes: welds, drops, orients, validates in place. Faults
+// are placed by the numbers of the arrays handed in. On failure the mesh is freed and empty.
 ax_status ax_mesh_make_surface(ax_mesh* mesh, ax_mesh_repairs* repairs, ax_error* error);

@@ -1,6 +1,6 @@
-// Bounding volume tree over boxes, in flat arrays: binned surface-area heuristic, leaves of up to four. The boxes are stored in
-// single precision around a centre and padded by more than that costs, so pruning never loses a candidate: what a search
-// finds does not depend on the order in which it visits.
+// Bounding volume tree over boxes, in flat arrays: binned surface-area heuristic, leaves of up to four. The boxes are
+// stored in single precision around a centre and padded by more than that costs, so pruning never loses a candidate:
+// what a search finds does not depend on the order in which it visits.
 #pragma once
 
 #include "ax/base.h"
@@ -41,8 +41,8 @@ static inline double ax_box_distance_squared(const ax_box_node* node, int side, 
     return sum;
 }
 
-// Calls visit(context, place) for the place in `order` of every item whose box may lie within *limit (a squared distance, which
-// `visit` may lower) of x, nearest boxes first. Inlined so that the calls are direct.
+// Calls visit(context, place) for the place in `order` of every item whose box may lie within *limit (a squared
+// distance, which `visit` may lower) of x, nearest boxes first. Inlined so that the calls are direct.
 static inline __attribute__((always_inline)) void ax_box_tree_nearest(const ax_box_tree* tree, const double x[3],
                                                                       const double* limit,
                                                                       void (*visit)(void* context, int place),

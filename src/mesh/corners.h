@@ -1,5 +1,5 @@
-// The corners around each vertex, so that algorithms can work vertex by vertex in linear time. Corner c = 3 f + k is corner k of
-// face f; half-edge c lies opposite.
+// The corners around each vertex, so that algorithms can work vertex by vertex in linear time. Corner c = 3 f + k is
+// corner k of face f; half-edge c lies opposite.
 #pragma once
 
 #include "ax/mesh.h"

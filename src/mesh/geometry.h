@@ -19,6 +19,6 @@ void ax_corner_angles(const ax_mesh* mesh, double (*out)[3]);
 // Cotangent Laplacian (Pinkall and Polthier 1993), positive semidefinite: row i sums 1/2 (cot a + cot b)(x_i - x_j).
 ax_sparse ax_cotan_laplacian(const ax_mesh* mesh);
 
-// Mean curvature H = n . (A x) / (2 m) with respect to the vertex normal: 1/R on a sphere of radius R with outward faces.
-// On the rim the average of the interior neighbours (0 if there are none). out: vertex_count.
+// Mean curvature H = n . (A x) / (2 m) with respect to the vertex normal: 1/R on a sphere of radius R with outward
+// faces. On the rim the average of the interior neighbours (0 if there are none). out: vertex_count.
 void ax_mean_curvature(const ax_mesh* mesh, double* out);

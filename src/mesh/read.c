@@ -160,8 +160,8 @@ static bool take(void* context, void* into, size_t bytes)
     return true;
 }
 
-// Reaps the parser, which is of no more use once everything is here or the time is over, and returns how it ended (-1 if nobody
-// knows).
+// Reaps the parser, which is of no more use once everything is here or the time is over, and returns how it ended (-1
+// if nobody knows).
 static int finish(parser* p, bool received)
 {
     close(p->output); // so that one which still writes ends

@@ -1,6 +1,7 @@
-// How a mesh travels from the process that parses a file to the one that uses it: the header below, then vertex_count times
-// three doubles, then face_count times three 32-bit integers, then `end`. Both ends are built together and run on one machine,
-// so numbers have its own byte order; but the sender has read an untrusted file, so the receiver trusts no field.
+// How a mesh travels from the process that parses a file to the one that uses it: the header below, then vertex_count
+// times three doubles, then face_count times three 32-bit integers, then `end`. Both ends are built together and run on
+// one machine, so numbers have its own byte order; but the sender has read an untrusted file, so the receiver trusts no
+// field.
 #pragma once
 
 #include "mesh/surface.h"
@@ -23,6 +24,7 @@ enum { ax_stream_most_faces = 20000000, ax_stream_most_vertices = 3 * ax_stream_
 // Exit codes of the reader.
 enum { ax_reader_done = 0, ax_reader_failed = 1, ax_reader_bad_input = 3 };
 
-// Receives a mesh from `take`, which fills `into` completely or returns false. False if the stream breaks off or is not one.
+// Receives a mesh from `take`, which fills `into` completely or returns false. False if the stream breaks off or is not
+// one.
 bool ax_stream_receive(bool (*take)(void* context, void* into, size_t bytes), void* context, ax_mesh* mesh,
                        ax_vertex_order* order);

@@ -21,7 +21,7 @@ typedef struct work {
     ax_error* error;
 } work;
 
-// --- words -------------------------------------------------------------------------------------------------------------
+// --- words -----------------------------------------------------------------------------------------------------------
 
 typedef struct words {
     char text[128];
@@ -59,7 +59,7 @@ static words at_face(const work* k, int f)
     return w;
 }
 
-// --- what was handed in ------------------------------------------------------------------------------------------------
+// --- what was handed in ----------------------------------------------------------------------------------------------
 
 static ax_status check_numbers(const work* k)
 {
@@ -152,7 +152,7 @@ static void drop_unused_vertices(work* k)
     ax_free(place);
 }
 
-// --- welding -----------------------------------------------------------------------------------------------------------
+// --- welding ---------------------------------------------------------------------------------------------------------
 
 static uint64_t mix(uint64_t a, uint64_t b, uint64_t c)
 {
@@ -161,8 +161,9 @@ static uint64_t mix(uint64_t a, uint64_t b, uint64_t c)
     return h ^ (h >> 32);
 }
 
-// Vertices that stay are more than the tolerance apart and sit in a hashed grid; each further vertex joins the one it finds within
-// the tolerance. Cells are some tolerances wide, so that most vertices look into one cell and none holds many.
+// Vertices that stay are more than the tolerance apart and sit in a hashed grid; each further vertex joins the one it
+// finds within the tolerance. Cells are some tolerances wide, so that most vertices look into one cell and none holds
+// many.
 typedef struct grid {
     double origin[3], per_cell;
     uint64_t mask;
@@ -234,7 +235,7 @@ static void weld(work* k)
     ax_free(g.next);
 }
 
-// --- faces without area ------------------------------------------------------------------------------------------------
+// --- faces without area ----------------------------------------------------------------------------------------------
 
 static void drop_collapsed_faces(work* k)
 {
@@ -251,8 +252,8 @@ static void drop_collapsed_faces(work* k)
 
 static const int crowded = -2;
 
-// Pairs the sides of faces that share an edge, in whichever direction they run: -1 on the rim, `crowded` for the third and any
-// further face at one edge. Returns the first crowded half-edge, or -1.
+// Pairs the sides of faces that share an edge, in whichever direction they run: -1 on the rim, `crowded` for the third
+// and any further face at one edge. Returns the first crowded half-edge, or -1.
 static int pair_sides(const ax_mesh* mesh, int* pair)
 {
     ax_corners corners = ax_corners_make(mesh);
@@ -307,8 +308,8 @@ static int flat_side(const work* k, int f)
     return 2 * ax_face_area(mesh, f) <= k->tolerance * length ? longest : -1;
 }
 
-// A face whose corner lies on its opposite side cannot just go: it would leave a slit. The neighbour across that side is split
-// at the corner instead, so that the surface stays the same; on the rim the face goes.
+// A face whose corner lies on its opposite side cannot just go: it would leave a slit. The neighbour across that side
+// is split at the corner instead, so that the surface stays the same; on the rim the face goes.
 static bool mend_flat_face(ax_mesh* mesh, int h, const int* pair, unsigned char* touched, unsigned char* dropped)
 {
     int f = h / 3, g = pair[h];
@@ -408,7 +409,7 @@ static void drop_duplicate_faces(work* k)
     ax_free(table);
 }
 
-// --- one part, manifold, orientable ------------------------------------------------------------------------------------
+// --- one part, manifold, orientable ----------------------------------------------------------------------------------
 
 static int root_of(int* parent, int v)
 {
@@ -481,7 +482,8 @@ static void turn(int face[3])
     face[2] = corner;
 }
 
-// Walks from face to face and turns those that disagree with the first; if these are the most, it is the others that turn.
+// Walks from face to face and turns those that disagree with the first; if these are the most, it is the others that
+// turn.
 static ax_status orient(work* k, const int* pair)
 {
     ax_mesh* mesh = k->mesh;
@@ -562,7 +564,7 @@ static ax_status check_fans(const work* k)
     return status;
 }
 
-// --- the rim -----------------------------------------------------------------------------------------------------------
+// --- the rim ---------------------------------------------------------------------------------------------------------
 
 static double loop_length(const ax_mesh* mesh, const ax_topology* topology, int loop)
 {
@@ -625,8 +627,8 @@ static ax_status check_kind(const work* k, const ax_topology* topology)
     return AX_OK;
 }
 
-// The area vector of a surface is that of any other over the same rim; it looks out where it looks from the rim's middle
-// towards the surface's. A surface that bulges to neither side looks up.
+// The area vector of a surface is that of any other over the same rim; it looks out where it looks from the rim's
+// middle towards the surface's. A surface that bulges to neither side looks up.
 static void turn_outward(work* k, const ax_topology* topology)
 {
     ax_mesh* mesh = k->mesh;
@@ -663,7 +665,7 @@ static void turn_outward(work* k, const ax_topology* topology)
     k->repairs.turned_outward = true;
 }
 
-// --- all of it ---------------------------------------------------------------------------------------------------------
+// --- all of it -------------------------------------------------------------------------------------------------------
 
 static ax_status check_manifold_and_orient(work* k)
 {

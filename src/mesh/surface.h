@@ -1,4 +1,5 @@
-// From a soup of triangles to a surface: what ax_mesh_make_surface does, for a reader that knows how its vertices came about.
+// From a soup of triangles to a surface: what ax_mesh_make_surface does, for a reader that knows how its vertices came
+// about.
 #pragma once
 
 #include "ax/mesh.h"

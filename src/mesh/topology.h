@@ -1,5 +1,5 @@
-// Half-edge connectivity of a triangle mesh in two arrays. Half-edge h = 3 f + k is the side of face f opposite its corner k: it
-// runs from corner (k + 1) % 3 to corner (k + 2) % 3.
+// Half-edge connectivity of a triangle mesh in two arrays. Half-edge h = 3 f + k is the side of face f opposite its
+// corner k: it runs from corner (k + 1) % 3 to corner (k + 2) % 3.
 #pragma once
 
 #include "ax/mesh.h"

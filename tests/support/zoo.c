@@ -13,7 +13,7 @@ static const double pi = 3.14159265358979323846;
 
 enum { places = 64 };
 
-// --- formats -----------------------------------------------------------------------------------------------------------
+// --- formats ---------------------------------------------------------------------------------------------------------
 
 static void write_obj(FILE* f, const ax_mesh* mesh)
 {
@@ -113,7 +113,7 @@ void zoo_write(const char* path, const char* format, const ax_mesh* mesh)
     assert_int_equal(fclose(f), 0);
 }
 
-// --- cages -------------------------------------------------------------------------------------------------------------
+// --- cages -----------------------------------------------------------------------------------------------------------
 
 static zoo_animal* house(zoo* all, const char* name, ax_status expected, const char* word)
 {
@@ -152,7 +152,7 @@ static void add_cut(zoo* all, const char* name, const char* format, int missing)
     assert_int_equal(truncate(animal->path, info.st_size - missing), 0);
 }
 
-// --- meshes ------------------------------------------------------------------------------------------------------------
+// --- meshes ----------------------------------------------------------------------------------------------------------
 
 static ax_mesh empty_mesh(int vertices, int faces)
 {
@@ -285,8 +285,8 @@ static ax_mesh inverted_part(int* turned)
     return mesh;
 }
 
-// A vertex in the middle of an inner edge that only one of the faces there knows of, with the triangle without area that closes the
-// slit, as some modellers write it; and a face with two equal corners.
+// A vertex in the middle of an inner edge that only one of the faces there knows of, with the triangle without area
+// that closes the slit, as some modellers write it; and a face with two equal corners.
 static ax_mesh with_slivers(void)
 {
     ax_mesh dome = shape_cap(4, 1), mesh = empty_mesh(dome.vertex_count + 1, dome.face_count + 3);
@@ -303,7 +303,7 @@ static ax_mesh with_slivers(void)
     return mesh;
 }
 
-// --- the animals -------------------------------------------------------------------------------------------------------
+// --- the animals -----------------------------------------------------------------------------------------------------
 
 static void add_formats(zoo* all)
 {

@@ -1,4 +1,5 @@
-// Awkward meshes, written to a temporary folder, each with what reading it must lead to. Whatever reads meshes is fed all of them.
+// Awkward meshes, written to a temporary folder, each with what reading it must lead to. Whatever reads meshes is fed
+// all of them.
 #pragma once
 
 #include "ax/mesh.h"
@@ -19,5 +20,6 @@ typedef struct zoo {
 void zoo_open(zoo* all);
 void zoo_close(zoo* all); // removes the files and the folder
 
-// One mesh as a file. Formats: "obj", "off", "ply" and "stl" (text, 17 digits, in STL 9), "ply binary" and "stl binary" (floats).
+// One mesh as a file. Formats: "obj", "off", "ply" and "stl" (text, 17 digits, in STL 9), "ply binary" and "stl binary"
+// (floats).
 void zoo_write(const char* path, const char* format, const ax_mesh* mesh);
