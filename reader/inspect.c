@@ -30,7 +30,14 @@ typedef struct span {
 typedef struct text {
     span rest;
     long line; // number of the line taken last, from 1
+    char newline;
 } text;
+
+static text text_of(span data)
+{
+    bool usual = memchr(data.at, '\n', (size_t)(data.end - data.at));
+    return (text){data, 0, usual ? '\n' : '\r'};
+}
 
 static bool is_space(char c)
 {
@@ -46,7 +53,7 @@ static bool next_line(text* t, span* line)
 {
     if (t->rest.at == t->rest.end)
         return false;
-    const char* end = memchr(t->rest.at, '\n', (size_t)(t->rest.end - t->rest.at));
+    const char* end = memchr(t->rest.at, t->newline, (size_t)(t->rest.end - t->rest.at));
     *line = (span){t->rest.at, end ? end : t->rest.end};
     t->rest.at = end ? end + 1 : t->rest.end;
     ++t->line;
@@ -126,6 +133,12 @@ static bool leading_integer(span word, int64_t* value)
     return true;
 }
 
+// In OBJ a line that ends in a backslash goes on in the next: it is left to the importer.
+static bool goes_on(span word)
+{
+    return length(word) == 1 && *word.at == '\\';
+}
+
 // Three coordinates from a line.
 static bool check_point(span* line, long number, inspection* found)
 {
@@ -133,6 +146,8 @@ static bool check_point(span* line, long number, inspection* found)
         span word;
         if (!next_word(line, &word))
             return fault(found, "Line %ld gives %d of 3 coordinates. %s", number, d, cut_off);
+        if (goes_on(word))
+            return true;
         if (is_infinite_or_nan(word))
             return fault(found,
                          "Line %ld has a vertex at no finite place (%.*s). Delete the vertex and its faces, or give it "
@@ -157,8 +172,10 @@ static bool check_obj_face(span line, long number, obj* seen, inspection* found)
 {
     int corners = 0;
     for (span word; next_word(&line, &word); ++corners) {
-        if (length(word) == 1 && *word.at == '\\')
-            return true; // goes on in the next line: left to the importer
+        if (goes_on(word)) {
+            ++seen->faces;
+            return true;
+        }
         int64_t vertex;
         if (*word.at == '#')
             break;
@@ -182,7 +199,7 @@ static bool check_obj_face(span line, long number, obj* seen, inspection* found)
 
 static bool inspect_obj(span data, inspection* found)
 {
-    text t = {data, 0};
+    text t = text_of(data);
     obj seen = {0};
     for (span line; next_line(&t, &line);) {
         span word;
@@ -212,7 +229,7 @@ static bool inspect_obj(span data, inspection* found)
 
 static bool inspect_stl_text(span data, inspection* found)
 {
-    text t = {data, 0};
+    text t = text_of(data);
     int64_t facets = 0;
     int corners = -1; // -1 outside a facet
     bool ended = false;
@@ -487,7 +504,7 @@ static bool inspect_ply_binary(span rest, const ply* p, inspection* found)
 
 static bool inspect_ply(span data, inspection* found)
 {
-    text t = {data, 0};
+    text t = text_of(data);
     ply p = {0};
     if (!read_ply_header(&t, &p, found))
         return false;
@@ -541,7 +558,7 @@ static bool check_off_face(span line, long number, int64_t face, int64_t vertice
 
 static bool inspect_off(span data, inspection* found)
 {
-    text t = {data, 0};
+    text t = text_of(data);
     span line, word;
     if (!next_off_line(&t, &line) || !next_word(&line, &word) || length(word) < 3 ||
         strncasecmp(word.end - 3, "off", 3) != 0)

@@ -578,21 +578,23 @@ static double loop_length(const ax_mesh* mesh, const ax_topology* topology, int 
 
 static ax_status several_loops(const work* k, const ax_topology* topology)
 {
-    int longest = 0;
-    for (int i = 1; i < topology->loop_count; ++i)
-        if (loop_length(k->mesh, topology, i) > loop_length(k->mesh, topology, longest))
-            longest = i;
-    int inner = -1; // the longest of the others
-    for (int i = 0; i < topology->loop_count; ++i)
-        if (i != longest && (inner < 0 || loop_length(k->mesh, topology, i) > loop_length(k->mesh, topology, inner)))
-            inner = i;
+    int rim = -1, inner = -1; // the longest and the second
+    double rim_length = -1, inner_length = -1;
+    for (int i = 0; i < topology->loop_count; ++i) {
+        double length = loop_length(k->mesh, topology, i);
+        if (length > rim_length) {
+            inner = rim, inner_length = rim_length;
+            rim = i, rim_length = length;
+        } else if (length > inner_length) {
+            inner = i, inner_length = length;
+        }
+    }
     return ax_fail(
         k->error, AX_CANNOT_REALISE,
-        "The surface has %d boundary loops, and only surfaces with one can be realised so far: beside the rim, which "
-        "is %.6g long, the longest is %.6g long, with %d edges, through %s. Fill the inner ones, or cut the surface "
-        "into pieces with one rim each.",
-        topology->loop_count, loop_length(k->mesh, topology, longest), loop_length(k->mesh, topology, inner),
-        topology->loop_start[inner + 1] - topology->loop_start[inner],
+        "The surface has %d boundary loops, and only surfaces with one can be realised so far: beside the rim, "
+        "which is %.6g long, the longest is %.6g long, with %d edges, through %s. Fill the inner ones, or cut the "
+        "surface into pieces with one rim each.",
+        topology->loop_count, rim_length, inner_length, topology->loop_start[inner + 1] - topology->loop_start[inner],
         at_vertex(k, topology->loop[topology->loop_start[inner]]).text);
 }
 

@@ -305,6 +305,16 @@ static ax_mesh with_slivers(void)
 
 // --- the animals -----------------------------------------------------------------------------------------------------
 
+// The same pyramid with the line ends of other systems, and with lines that go on in the next.
+static void add_pyramid(zoo* all, const char* name, const char* end, const char* between)
+{
+    FILE* f = fopen(house(all, name, AX_OK, NULL)->path, "wb");
+    assert_non_null(f);
+    fprintf(f, "v 0 0%s1%sv 1 0 0%sv 0 1 0%sv -1 0 0%sv 0 -1 0%s", between, end, end, end, end, end);
+    fprintf(f, "f 1 2%s3%sf 1 3 4%sf 1 4 5%sf 1 5 2%s", between, end, end, end, end);
+    assert_int_equal(fclose(f), 0);
+}
+
 static void add_formats(zoo* all)
 {
     ax_mesh dome = shape_cap(5, 1);
@@ -318,6 +328,9 @@ static void add_formats(zoo* all)
     zoo_write(binary->path, "stl binary", &dome);
     text->repairs.welded_vertices = binary->repairs.welded_vertices = 3 * dome.face_count - dome.vertex_count;
     ax_mesh_free(&dome);
+    add_pyramid(all, "dos.obj", "\r\n", " ");
+    add_pyramid(all, "old-mac.obj", "\r", " ");
+    add_pyramid(all, "continued.obj", "\n", " \\\n");
 
     FILE* f = fopen(house(all, "quads.obj", AX_OK, NULL)->path, "wb");
     assert_non_null(f);
