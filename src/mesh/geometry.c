@@ -70,16 +70,6 @@ void ax_vertex_normals(const ax_mesh* mesh, double (*out)[3])
         normalise(out[v]);
 }
 
-void ax_vertex_areas(const ax_mesh* mesh, double* out)
-{
-    memset(out, 0, (size_t)mesh->vertex_count * sizeof *out);
-    for (int f = 0; f < mesh->face_count; ++f) {
-        double third = ax_face_area(mesh, f) / 3;
-        for (int k = 0; k < 3; ++k)
-            out[mesh->faces[f][k]] += third;
-    }
-}
-
 // The edges that leave corner k: their cross product's length over their dot product is the tangent of the angle.
 static void corner_sine_cosine(const ax_mesh* mesh, int face, int k, double* sine, double* cosine)
 {
@@ -107,6 +97,28 @@ static double half_cotangent(const ax_mesh* mesh, int face, int k)
     double sine, cosine;
     corner_sine_cosine(mesh, face, k, &sine, &cosine);
     return 0.5 * cosine / sine;
+}
+
+// Thirds of the face areas would do for sums, but leave H at irregular vertices off by up to half.
+void ax_vertex_areas(const ax_mesh* mesh, double* out)
+{
+    memset(out, 0, (size_t)mesh->vertex_count * sizeof *out);
+    for (int f = 0; f < mesh->face_count; ++f) {
+        const int* corner = mesh->faces[f];
+        double half_cot[3], area = ax_face_area(mesh, f);
+        int obtuse = -1;
+        for (int k = 0; k < 3; ++k) {
+            half_cot[k] = half_cotangent(mesh, f, k);
+            obtuse = half_cot[k] < 0 ? k : obtuse;
+        }
+        for (int k = 0; k < 3; ++k) {
+            int a = (k + 1) % 3, b = (k + 2) % 3;
+            double e = ax_distance3(mesh->positions[corner[k]], mesh->positions[corner[a]]);
+            double g = ax_distance3(mesh->positions[corner[k]], mesh->positions[corner[b]]);
+            out[corner[k]] +=
+                obtuse < 0 ? 0.25 * (e * e * half_cot[b] + g * g * half_cot[a]) : (k == obtuse ? 0.5 : 0.25) * area;
+        }
+    }
 }
 
 // Column w takes its rows in the order in which the vertices v > w come up, which is sorted; the last one entered tells

@@ -124,11 +124,11 @@ ax_curvature_screen ax_curvature_measure(const ax_mesh* mesh)
     ax_topology_free(&topology);
 
     sample* samples = AX_NEW(sample, n);
-    for (int v = 0; v < n; ++v) {
+    for (int v = 0; v < n; ++v)
         samples[v] = (sample){screen.mean[v], screen.vertex_area[v], v};
-        screen.area += screen.vertex_area[v];
-    }
     qsort(samples, (size_t)n, sizeof *samples, flattest_first);
+    for (int k = 0; k < n; ++k)
+        screen.area += samples[k].area; // in this order, so that the share below can be 1
     double unit = 1 / sqrt(screen.area), nonpositive = 0;
     for (int k = 0; k < n && samples[k].mean <= FLAT * unit; ++k)
         nonpositive += samples[k].area;

@@ -233,8 +233,20 @@ static void obstacle_free(obstacle* o)
     ax_free(o->on_rim);
 }
 
-// Steps from h = 0 until settled; ends early when a step fails or eight steps have not halved the change. True when settled;
-// what has been reached is kept either way.
+// Smallest H off the rim.
+static double least_curvature(const obstacle* o)
+{
+    double *curvature = AX_NEW(double, o->mesh.vertex_count), least = INFINITY;
+    ax_mean_curvature(&o->mesh, curvature);
+    for (int v = 0; v < o->mesh.vertex_count; ++v)
+        if (!o->on_rim[v])
+            least = fmin(least, curvature[v]);
+    ax_free(curvature);
+    return least;
+}
+
+// Steps from h = 0 until the surface rests and H >= eps; ends early when a step fails or eight steps have not halved the change. What
+// has been reached is kept.
 static ax_status settle(obstacle* o, const ax_progress* progress, int* steps, bool* settled, ax_error* error)
 {
     memset(o->h, 0, (size_t)o->mesh.vertex_count * sizeof *o->h);
@@ -251,7 +263,7 @@ static ax_status settle(obstacle* o, const ax_progress* progress, int* steps, bo
         if (isnan(change))
             break;
         ++*steps;
-        *settled = change <= SETTLED * o->diagonal;
+        *settled = change <= SETTLED * o->diagonal && least_curvature(o) >= o->curvature;
         if (k % 8 == 7) {
             if (change > eight_ago / 2)
                 break;
@@ -262,21 +274,31 @@ static ax_status settle(obstacle* o, const ax_progress* progress, int* steps, bo
 }
 
 // Along an axis first, if there is one, since that keeps the plan. There a steep part behind a concave rim can have no solution (it
-// would have to hang over the rim); along the vertex normals it has.
+// would have to hang over the rim); along the vertex normals it has. The better of the two is kept.
 static ax_status solve(obstacle* o, const ax_progress* progress, int* steps, ax_error* error)
 {
-    double axis[3];
+    int n = o->mesh.vertex_count;
+    double axis[3], *along_axis = NULL, least = -INFINITY;
     bool settled = false;
     ax_status status = AX_OK;
     if (find_axis(o->start, axis)) {
-        for (int v = 0; v < o->mesh.vertex_count; ++v)
+        for (int v = 0; v < n; ++v)
             memcpy(o->direction[v], axis, sizeof axis);
         status = settle(o, progress, steps, &settled, error);
+        along_axis = ax_copy(o->h, (size_t)n, sizeof *o->h);
+        least = least_curvature(o);
     }
     if (status == AX_OK && !settled) {
         ax_vertex_normals(o->start, o->direction);
         status = settle(o, progress, steps, &settled, error);
+        if (along_axis && least >= least_curvature(o)) {
+            memcpy(o->h, along_axis, (size_t)n * sizeof *o->h);
+            for (int v = 0; v < n; ++v)
+                memcpy(o->direction[v], axis, sizeof axis);
+            move(o, o->h);
+        }
     }
+    ax_free(along_axis);
     if (status == AX_OK && *steps == 0)
         status = ax_fail(error, AX_FAILED,
                          "The surface could not be projected: some triangles are too thin. Remesh it with rounder "

@@ -61,3 +61,44 @@ ax_mesh shape_paraboloid(int rings, double c)
     }
     return mesh;
 }
+
+ax_mesh shape_over_square(int n, double (*height)(double x, double y))
+{
+    ax_mesh mesh = {.vertex_count = (n + 1) * (n + 1), .face_count = 2 * n * n};
+    mesh.positions = ax_alloc((size_t)mesh.vertex_count, sizeof *mesh.positions);
+    mesh.faces = ax_alloc((size_t)mesh.face_count, sizeof *mesh.faces);
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+            double* x = mesh.positions[j * (n + 1) + i];
+            x[0] = -1 + 2.0 * i / n, x[1] = -1 + 2.0 * j / n, x[2] = height(x[0], x[1]);
+        }
+    int(*face)[3] = mesh.faces;
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            int a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = c - 1;
+            int corners[2][2][3] = {{{a, b, c}, {a, c, d}}, {{a, b, d}, {b, c, d}}};
+            for (int k = 0; k < 2; ++k, ++face)
+                for (int q = 0; q < 3; ++q)
+                    (*face)[q] = corners[(i + j) % 2][k][q];
+        }
+    return mesh;
+}
+
+void shape_move(ax_mesh* mesh, double angle, double x, double y, double z)
+{
+    for (int v = 0; v < mesh->vertex_count; ++v) {
+        double *p = mesh->positions[v], b = p[1], c = p[2];
+        p[0] += x;
+        p[1] = cos(angle) * b - sin(angle) * c + y;
+        p[2] = sin(angle) * b + cos(angle) * c + z;
+    }
+}
+
+void shape_turn_over(ax_mesh* mesh)
+{
+    for (int f = 0; f < mesh->face_count; ++f) {
+        int corner = mesh->faces[f][1];
+        mesh->faces[f][1] = mesh->faces[f][2];
+        mesh->faces[f][2] = corner;
+    }
+}

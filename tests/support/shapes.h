@@ -10,3 +10,9 @@ ax_mesh shape_over_disk(int rings, double (*height)(double x, double y));
 ax_mesh shape_cap(int rings, double angle);
 // z = c (1 - x^2 - y^2) over the unit disk: H > 0 everywhere.
 ax_mesh shape_paraboloid(int rings, double c);
+// Grid over the square [-1, 1]^2 with 2 n^2 triangles, lifted by z = height(x, y); its diagonals alternate.
+ax_mesh shape_over_square(int n, double (*height)(double x, double y));
+// Reads `mesh` in another frame: turned by `angle` (radians) about the x-axis, then moved.
+void shape_move(ax_mesh* mesh, double angle, double x, double y, double z);
+// The other side out.
+void shape_turn_over(ax_mesh* mesh);
