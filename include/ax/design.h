@@ -9,8 +9,12 @@ typedef enum ax_border {
     AX_BORDER_RELEASED,    // border triangles may deviate from equilateral
     AX_BORDER_INSIDE,      // whole triangles inside the boundary curve
 } ax_border;
+const char* ax_border_name(ax_border border); // "equilateral", "released", "inside"
+bool ax_border_parse(const char* name, ax_border* border);
 
 typedef enum ax_load_kind { AX_LOAD_NONE, AX_LOAD_GRAVITY, AX_LOAD_INFLATION } ax_load_kind;
+const char* ax_load_kind_name(ax_load_kind kind); // "none", "gravity", "inflation"
+bool ax_load_kind_parse(const char* name, ax_load_kind* kind);
 
 typedef struct ax_load {
     ax_load_kind kind;

@@ -4,13 +4,14 @@
 #include "ax/design.h"
 
 typedef enum ax_state { AX_STATE_DEFAULT, AX_STATE_FLAT, AX_STATE_DEPLOYED, AX_STATE_SIMULATED } ax_state;
+const char* ax_state_name(ax_state state); // "default", "flat", "deployed", "simulated"
 
 typedef struct ax_export_options {
     ax_state state;    // AX_STATE_DEFAULT: flat for cut files, deployed otherwise
     const char* title; // name shown in drawings, NULL: none
 } ax_export_options;
 
-// One exporter: a file of its own in src/export/types. `write` produces the whole file through `out`.
+// One exporter: a file of its own in src/export/types.
 typedef struct ax_export_type {
     const char* ending; // with the dot: ".svg"
     const char* name;   // "SVG drawing"
@@ -18,12 +19,13 @@ typedef struct ax_export_type {
     ax_state default_state;
     bool states[4]; // which ax_state values it can write
     ax_status (*write)(const ax_design* design, ax_state state, const ax_export_options* options, const char* path,
-                       ax_error* error); // writes to `path` as it is; the caller renames
+                       ax_error* error); // writes the whole file to `path` as it is; the caller renames
 } ax_export_type;
 
 // All exporters, in order of their endings.
 const ax_export_type* const* ax_export_types(int* count);
 
-// Writes beside `path` and renames, so that no partial file is ever left. AX_USAGE on an unknown ending (the message lists the known
-// ones) or a state the format does not carry; AX_BAD_INPUT when the state is missing (not simulated).
+// Writes beside `path` and renames, so that no partial file is ever left. NULL options: default state, no title. AX_USAGE on an
+// unknown ending (the message lists the known ones) or a state the format does not carry; AX_BAD_INPUT when the state is missing
+// (not simulated); AX_FAILED when the disk does not take it.
 ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error);

@@ -1,0 +1,96 @@
+#include "ax/export.h"
+
+#include "base/file.h"
+
+#include <assert.h>
+#include <locale.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+static const char* const state_names[] = {[AX_STATE_DEFAULT] = "default",
+                                          [AX_STATE_FLAT] = "flat",
+                                          [AX_STATE_DEPLOYED] = "deployed",
+                                          [AX_STATE_SIMULATED] = "simulated"};
+
+const char* ax_state_name(ax_state state)
+{
+    assert((size_t)state < sizeof state_names / sizeof *state_names);
+    return state_names[state];
+}
+
+// The longest ending counts, so that one may be the tail of another.
+static const ax_export_type* find_type(const char* path)
+{
+    int count;
+    const ax_export_type* const* types = ax_export_types(&count);
+    const ax_export_type* found = NULL;
+    size_t length = strlen(path), longest = 0;
+    for (int k = 0; k < count; ++k) {
+        size_t ending = strlen(types[k]->ending);
+        if (ending > longest && length >= ending && strcasecmp(path + length - ending, types[k]->ending) == 0)
+            found = types[k], longest = ending;
+    }
+    return found;
+}
+
+static ax_status fail_unknown_ending(const char* path, ax_error* error)
+{
+    int count, used = 0;
+    const ax_export_type* const* types = ax_export_types(&count);
+    char known[1024] = "";
+    for (int k = 0; k < count && used < (int)sizeof known; ++k)
+        used += snprintf(known + used, sizeof known - (size_t)used, "%s%s",
+                         k == 0          ? ""
+                         : k + 1 < count ? ", "
+                                         : " or ",
+                         types[k]->ending);
+    return ax_fail(error, AX_USAGE, "The ending of %s names no known format. End the name in %s.", path, known);
+}
+
+static ax_status check_state(const ax_design* design, const ax_export_type* type, ax_state state, ax_error* error)
+{
+    if (!type->states[state])
+        return ax_fail(error, AX_USAGE, "A %s (%s) cannot hold the %s state; it is for the %s state.", type->name,
+                       type->ending, ax_state_name(state), ax_state_name(type->default_state));
+    if (state == AX_STATE_SIMULATED && !design->simulated)
+        return ax_fail(error, AX_BAD_INPUT,
+                       "The design has no simulated state to export. Simulate it first, or export the deployed state.");
+    return AX_OK;
+}
+
+// Exporters know the file beside only; people know the destination.
+static void name_destination(const ax_file* file, ax_error* error)
+{
+    char* place = error ? strstr(error->message, file->path) : NULL;
+    if (place) {
+        size_t keep = strlen(file->destination), whole = strlen(file->path);
+        memmove(place + keep, place + whole, strlen(place + whole) + 1);
+    }
+}
+
+ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error)
+{
+    const ax_export_options given = options ? *options : (ax_export_options){0};
+    const ax_export_type* type = find_type(path);
+    if (!type)
+        return fail_unknown_ending(path, error);
+    ax_state state = given.state == AX_STATE_DEFAULT ? type->default_state : given.state;
+    ax_status status = check_state(design, type, state, error);
+    if (status != AX_OK)
+        return status;
+    ax_file file;
+    status = ax_file_begin_path(&file, path, error);
+    if (status != AX_OK)
+        return status;
+    // numbers have a decimal point whatever the program's locale says
+    locale_t plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), before = uselocale(plain);
+    status = type->write(design, state, &given, file.path, error);
+    uselocale(before);
+    freelocale(plain);
+    if (status == AX_OK)
+        return ax_file_commit(&file, error);
+    name_destination(&file, error);
+    ax_file_abandon(&file);
+    return status;
+}
