@@ -20,6 +20,10 @@ typedef struct ax_linkage {
 void ax_linkage_free(ax_linkage* linkage);
 ax_linkage ax_linkage_copy(const ax_linkage* linkage);
 
+// For linkages that come from outside: AX_BAD_INPUT, with the place, unless all indices are in range, every hinge is held by one
+// (then it is on the rim) or two triangles, and every edge of a triangle, turned round, lies on exactly one hole or opening.
+ax_status ax_linkage_check(const ax_linkage* linkage, ax_error* error);
+
 // Largest magnitude of a panel's column and row, so that its name fits.
 #define AX_PANEL_LIMIT 10000000
 

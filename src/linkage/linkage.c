@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 void ax_linkage_free(ax_linkage* linkage)
 {
@@ -34,6 +35,86 @@ ax_linkage ax_linkage_copy(const ax_linkage* linkage)
         copy_loops(linkage->opening_start, linkage->opening_count, linkage->opening_hinges, &copy.opening_hinges);
     copy.on_rim = ax_copy(linkage->on_rim, (size_t)linkage->hinge_count, sizeof *linkage->on_rim);
     return copy;
+}
+
+// The corners (3 triangle + k) that hold each hinge, -1 where there is no second one.
+static ax_status hold_hinges(const ax_linkage* linkage, int (*held)[2], ax_error* error)
+{
+    memset(held, -1, (size_t)linkage->hinge_count * sizeof *held);
+    for (int c = 0; c < 3 * linkage->triangle_count; ++c) {
+        const int *corner = linkage->triangles[c / 3], *panel = linkage->panels[c / 3], h = corner[c % 3];
+        if (h < 0 || h >= linkage->hinge_count)
+            return ax_fail(error, AX_BAD_INPUT, "Triangle %d names hinge %d; there are %d hinges.", c / 3, h,
+                           linkage->hinge_count);
+        if (h == corner[(c + 1) % 3])
+            return ax_fail(error, AX_BAD_INPUT, "Triangle %d names hinge %d twice.", c / 3, h);
+        if (held[h][1] >= 0)
+            return ax_fail(error, AX_BAD_INPUT, "Hinge %d is held by more than two triangles.", h);
+        held[h][held[h][0] >= 0] = c;
+        for (int d = 0; d < 2; ++d)
+            if (panel[d] < -AX_PANEL_LIMIT || panel[d] > AX_PANEL_LIMIT || panel[2] < 0 || panel[2] > 1)
+                return ax_fail(error, AX_BAD_INPUT, "Triangle %d has no place in the lattice.", c / 3);
+    }
+    for (int h = 0; h < linkage->hinge_count; ++h)
+        if (held[h][0] < 0 || linkage->on_rim[h] != (held[h][1] < 0))
+            return ax_fail(error, AX_BAD_INPUT, "Hinge %d is held by %d triangles and %s.", h,
+                           (held[h][0] >= 0) + (held[h][1] >= 0),
+                           linkage->on_rim[h] ? "marked as on the rim" : "not marked as on the rim");
+    return AX_OK;
+}
+
+// The edge of a triangle from hinge `b` to hinge `a`, named by its first corner; -1 if there is none.
+static int edge_between(const ax_linkage* linkage, const int (*held)[2], int b, int a)
+{
+    for (int s = 0; s < 2; ++s) {
+        int c = held[b][s];
+        if (c >= 0 && linkage->triangles[c / 3][(c + 1) % 3] == a)
+            return c;
+    }
+    return -1;
+}
+
+// Follows all holes, or all openings, along the triangles; `met` marks the edges passed.
+static ax_status follow_loops(const ax_linkage* linkage, bool closed, const int (*held)[2], unsigned char* met,
+                              ax_error* error)
+{
+    int count = closed ? linkage->hole_count : linkage->opening_count;
+    const int* start = closed ? linkage->hole_start : linkage->opening_start;
+    const int* hinges = closed ? linkage->hole_hinges : linkage->opening_hinges;
+    const char* name = closed ? "Hole" : "Opening";
+    for (int k = 0; k < count; ++k) {
+        const int *loop = hinges + start[k], length = start[k + 1] - start[k];
+        for (int i = 0; i < length; ++i)
+            if (loop[i] < 0 || loop[i] >= linkage->hinge_count)
+                return ax_fail(error, AX_BAD_INPUT, "%s %d names hinge %d; there are %d hinges.", name, k, loop[i],
+                               linkage->hinge_count);
+        if (length < 3 || (!closed && !(linkage->on_rim[loop[0]] && linkage->on_rim[loop[length - 1]])))
+            return ax_fail(error, AX_BAD_INPUT, "%s %d is too short or does not end on the rim.", name, k);
+        for (int i = 0; i < length - !closed; ++i) {
+            int a = loop[i], b = loop[(i + 1) % length], edge = edge_between(linkage, held, b, a);
+            if (edge < 0 || met[edge])
+                return ax_fail(error, AX_BAD_INPUT, "%s %d goes from hinge %d to %d, where no free edge leads.", name,
+                               k, a, b);
+            met[edge] = 1;
+        }
+    }
+    return AX_OK;
+}
+
+ax_status ax_linkage_check(const ax_linkage* linkage, ax_error* error)
+{
+    int(*held)[2] = ax_alloc((size_t)linkage->hinge_count, sizeof *held);
+    unsigned char* met = AX_NEW0(unsigned char, 3 * (size_t)linkage->triangle_count);
+    ax_status status = hold_hinges(linkage, held, error);
+    for (int closed = 1; closed >= 0 && status == AX_OK; --closed)
+        status = follow_loops(linkage, closed, (const int(*)[2])held, met, error);
+    for (int c = 0; c < 3 * linkage->triangle_count && status == AX_OK; ++c)
+        if (!met[c])
+            status =
+                ax_fail(error, AX_BAD_INPUT, "Triangle %d has an edge that lies on no hole and no opening.", c / 3);
+    ax_free(held);
+    ax_free(met);
+    return status;
 }
 
 // Rows count A, B, ... Z, AA, ... from row 0 up and -A, -B, ... from row -1 down; places within a row 1, 2, ... and -1, -2, ...
