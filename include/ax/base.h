@@ -45,8 +45,9 @@ const ax_progress* ax_progress_within(ax_progress_part* slot, const ax_progress*
 
 // Memory. Allocation never returns NULL: exhaustion is not an input error that a caller could mend, so it goes to the
 // handler set here, which must not return; the default aborts. Release with ax_free. Both are thread safe.
-void* ax_alloc(size_t count, size_t size);  // uninitialised, count * size checked for overflow
-void* ax_calloc(size_t count, size_t size); // zeroed
+void* ax_alloc(size_t count, size_t size);         // uninitialised, count * size checked for overflow
+void* ax_calloc(size_t count, size_t size);        // zeroed
+void* ax_alloc_aligned(size_t count, size_t size); // uninitialised, on a 64-byte boundary; not for ax_realloc
 void* ax_realloc(void* block, size_t count, size_t size);
 void* ax_copy(const void* block, size_t count, size_t size); // NULL stays NULL
 void ax_free(void* block);

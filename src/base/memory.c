@@ -57,6 +57,12 @@ void* ax_calloc(size_t count, size_t size)
     return checked(calloc(bytes, 1), bytes);
 }
 
+void* ax_alloc_aligned(size_t count, size_t size)
+{
+    size_t bytes = (bytes_of(count, size) + 63) & ~(size_t)63;
+    return checked(aligned_alloc(64, bytes), bytes);
+}
+
 void* ax_realloc(void* block, size_t count, size_t size)
 {
     size_t bytes = bytes_of(count, size);
