@@ -122,7 +122,7 @@ static void dissect(dissection* d, int from, int to)
             }
     int middle = from, best = -1, least = count + 1;
     double directions[DIRECTIONS][3] = {{0}};
-    int tried = count > 5000 ? DIRECTIONS : 3, stride = DIRECTIONS / tried;
+    int tried = count > 5000 ? DIRECTIONS : 2, stride = DIRECTIONS / tried;
     for (int k = 0; k < DIRECTIONS; k += stride) {
         directions[k][axis[0]] = cos(k * AX_PI / DIRECTIONS);
         directions[k][axis[1]] = sin(k * AX_PI / DIRECTIONS);
