@@ -4,7 +4,8 @@
 #include "deploy/admm.h"
 
 #include "base/vec.h"
-#include "linalg/cholesky.h"
+#include "linalg/order.h"
+#include "linalg/panels.h"
 
 #include <string.h>
 
@@ -16,13 +17,34 @@ struct ax_admm {
     double rho;
     double (*x)[3];
     double (*z)[3], (*u)[3]; // per edge: the rigid edge vector and its scaled multiplier
-    double (*right)[3];      // per free hinge
+    ax_vec4* right;          // per free hinge, in elimination order
     double (*gradient)[3];
     double* force;
-    ax_sparse laplacian;
-    ax_cholesky* factor;
+    int* row; // per free hinge: its place in elimination order
+    ax_panels* factor;
     int iterations;
 };
+
+static void factorise(ax_admm* a, ax_entries* entries)
+{
+    const ax_deploy_model* m = a->model;
+    ax_sparse laplacian = ax_entries_sparse(entries, m->unknowns);
+    double(*place)[3] = ax_calloc((size_t)m->unknowns, sizeof *place);
+    int* order = AX_NEW(int, m->unknowns);
+    for (int u = 0; u < m->unknowns; ++u)
+        memcpy(place[u], m->rest[m->hinge[u]], sizeof *m->rest);
+    ax_order_by_place(&laplacian, (const double(*)[3])place, order);
+    ax_cholesky* factor = ax_cholesky_analyse_ordered(&laplacian, AX_FACTOR_PANELS, order);
+    ax_cholesky_factor(factor, &laplacian); // an edge Laplacian plus 1e-9 is positive definite
+    a->factor = ax_panels_make(factor);
+    a->row = AX_NEW(int, m->unknowns);
+    for (int k = 0; k < m->unknowns; ++k)
+        a->row[ax_panels_order(a->factor)[k]] = k;
+    ax_cholesky_free(factor);
+    ax_sparse_free(&laplacian);
+    ax_free(place);
+    ax_free(order);
+}
 
 ax_admm* ax_admm_make(const ax_deploy_model* m, const double (*x)[3])
 {
@@ -31,7 +53,7 @@ ax_admm* ax_admm_make(const ax_deploy_model* m, const double (*x)[3])
     a->x = ax_copy(x, (size_t)m->hinges, sizeof *a->x);
     a->z = ax_alloc((size_t)m->edge_count, sizeof *a->z);
     a->u = ax_calloc((size_t)m->edge_count, sizeof *a->u);
-    a->right = ax_alloc((size_t)m->unknowns, sizeof *a->right);
+    a->right = ax_alloc_aligned((size_t)m->unknowns, sizeof *a->right);
     a->gradient = ax_alloc((size_t)m->hinges, sizeof *a->gradient);
     a->force = AX_NEW0(double, m->edge_count);
     ax_entries entries = {0};
@@ -51,9 +73,7 @@ ax_admm* ax_admm_make(const ax_deploy_model* m, const double (*x)[3])
         for (int c = 0; c < 3; ++c) // coincident ends have no direction: +x is as good as any, and repeatable
             a->z[e][c] = length > 0 ? m->length[e] / length * d[c] : (c == 0 ? m->length[e] : 0);
     }
-    a->laplacian = ax_entries_sparse(&entries, m->unknowns);
-    a->factor = ax_cholesky_analyse(&a->laplacian, AX_FACTOR_SIMPLICIAL);
-    ax_cholesky_factor(a->factor, &a->laplacian);
+    factorise(a, &entries);
     return a;
 }
 
@@ -61,11 +81,10 @@ void ax_admm_free(ax_admm* a)
 {
     if (!a)
         return;
-    void* blocks[] = {a->x, a->z, a->u, a->right, a->gradient, a->force};
+    void* blocks[] = {a->x, a->z, a->u, a->right, a->gradient, a->force, a->row};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
-    ax_sparse_free(&a->laplacian);
-    ax_cholesky_free(a->factor);
+    ax_panels_free(a->factor);
     ax_free(a);
 }
 
@@ -107,20 +126,20 @@ static void iterate(ax_admm* a)
         ax_deploy_energy(m, (const double(*)[3])a->x, a->gradient);
     for (int u = 0; u < m->unknowns; ++u)
         for (int c = 0; c < 3; ++c)
-            a->right[u][c] = -a->gradient[m->hinge[u]][c] / a->rho;
+            a->right[a->row[u]][c] = -a->gradient[m->hinge[u]][c] / a->rho;
     for (int e = 0; e < m->edge_count; ++e) {
         int h[2] = {m->edge[e][0], m->edge[e][1]}, i = m->unknown[h[0]], j = m->unknown[h[1]];
         for (int c = 0; c < 3; ++c) {
             double y = a->z[e][c] - a->u[e][c];
             if (i >= 0)
-                a->right[i][c] += y + (j < 0 ? a->x[h[1]][c] : 0);
+                a->right[a->row[i]][c] += y + (j < 0 ? a->x[h[1]][c] : 0);
             if (j >= 0)
-                a->right[j][c] -= y - (i < 0 ? a->x[h[0]][c] : 0);
+                a->right[a->row[j]][c] -= y - (i < 0 ? a->x[h[0]][c] : 0);
         }
     }
-    ax_cholesky_solve3(a->factor, a->right);
+    ax_panels_solve(a->factor, NULL, a->right);
     for (int u = 0; u < m->unknowns; ++u)
-        memcpy(a->x[m->hinge[u]], a->right[u], sizeof *a->right);
+        memcpy(a->x[m->hinge[u]], a->right[a->row[u]], sizeof *a->x);
     for (int e = 0; e < m->edge_count; ++e) {
         const double *p = a->x[m->edge[e][0]], *q = a->x[m->edge[e][1]];
         double y[3];

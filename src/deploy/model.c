@@ -389,7 +389,10 @@ void ax_deploy_start(const ax_deploy_model* m, double noise, double (*x)[3])
 
     // harmonic extension of the displacement of the supports over the graph of edges
     ax_entries entries = {0};
-    double(*move)[3] = ax_calloc((size_t)m->unknowns, sizeof *move);
+    double* columns = AX_NEW0(double, 3 * (size_t)m->unknowns);
+    double* move[3]; // one column per coordinate
+    for (int c = 0; c < 3; ++c)
+        move[c] = columns + (size_t)c * (size_t)m->unknowns;
     for (int u = 0; u < m->unknowns; ++u)
         ax_entries_add(&entries, u, u, 1e-9); // keeps parts without support solvable
     for (int e = 0; e < m->edge_count; ++e) {
@@ -400,15 +403,15 @@ void ax_deploy_start(const ax_deploy_model* m, double noise, double (*x)[3])
             ax_entries_add(&entries, u[end], u[end], 1);
             if (u[1 - end] < 0)
                 for (int c = 0; c < 3; ++c)
-                    move[u[end]][c] += m->support[h[1 - end]][c] - x[h[1 - end]][c];
+                    move[c][u[end]] += m->support[h[1 - end]][c] - x[h[1 - end]][c];
         }
         if (u[0] >= 0 && u[1] >= 0)
             ax_entries_add(&entries, u[0], u[1], -1);
     }
     ax_sparse laplacian = ax_entries_sparse(&entries, m->unknowns);
-    ax_cholesky* factor = ax_cholesky_analyse(&laplacian, AX_FACTOR_SIMPLICIAL);
+    ax_cholesky* factor = ax_cholesky_analyse(&laplacian, AX_FACTOR_ONCE);
     if (ax_cholesky_factor(factor, &laplacian))
-        ax_cholesky_solve3(factor, move);
+        ax_cholesky_solve(factor, columns, columns, 3);
     ax_cholesky_free(factor);
     ax_sparse_free(&laplacian);
 
@@ -418,6 +421,6 @@ void ax_deploy_start(const ax_deploy_model* m, double noise, double (*x)[3])
             if (m->unknown[h] < 0)
                 x[h][c] = m->support[h][c];
             else
-                x[h][c] += move[m->unknown[h]][c] + ax_random_uniform(&random, -noise, noise);
-    ax_free(move);
+                x[h][c] += move[c][m->unknown[h]] + ax_random_uniform(&random, -noise, noise);
+    ax_free(columns);
 }

@@ -185,7 +185,8 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
         result.exact = edge <= exact && residual <= exact;
         if (result.exact || result.steps == most_steps)
             break;
-        if (!ax_progress_report(progress, "Balancing forces", (double)result.steps / most_steps, fmax(edge, residual))) {
+        if (!ax_progress_report(progress, "Balancing forces", (double)result.steps / most_steps,
+                                fmax(edge, residual))) {
             result.cancelled = true;
             break;
         }

@@ -9,7 +9,6 @@ struct ax_cholesky {
     cholmod_common common;
     cholmod_factor* factor;
     cholmod_dense *y, *e, *x; // workspace kept between solves
-    double (*permuted)[3];
     ax_factor_kind kind;
     ax_cholesky_counters counters;
 };
@@ -65,7 +64,6 @@ ax_cholesky* ax_cholesky_analyse_ordered(const ax_sparse* matrix, ax_factor_kind
     common->quick_return_if_not_posdef = 1;
     common->final_ll = 1;
     static const int modes[] = {[AX_FACTOR_SUPERNODAL] = CHOLMOD_SUPERNODAL,
-                                [AX_FACTOR_SIMPLICIAL] = CHOLMOD_SIMPLICIAL,
                                 [AX_FACTOR_ONCE] = CHOLMOD_AUTO,
                                 [AX_FACTOR_PANELS] = CHOLMOD_SUPERNODAL};
     common->supernodal = modes[kind];
@@ -77,7 +75,8 @@ ax_cholesky* ax_cholesky_analyse_ordered(const ax_sparse* matrix, ax_factor_kind
     common->nmethods = 1;
     common->method[0].ordering = order ? CHOLMOD_GIVEN : CHOLMOD_AMD;
     common->postorder = 1;
-    if (kind == AX_FACTOR_PANELS) // repeated solves are bound by memory: only supernodes of up to four columns are merged, which
+    if (kind ==
+        AX_FACTOR_PANELS) // repeated solves are bound by memory: only supernodes of up to four columns are merged, which
         for (int k = 0; k < 3; ++k) // halves the factorisation and stores no zeros that a solve would notice
             common->nrelax[k] = k == 0 ? 4 : 0, common->zrelax[k] = 0;
     cholmod_sparse a = view(matrix);
@@ -85,7 +84,6 @@ ax_cholesky* ax_cholesky_analyse_ordered(const ax_sparse* matrix, ax_factor_kind
     assert(factor->factor);
     factor->kind = kind;
     factor->counters.analyses = 1;
-    factor->permuted = ax_alloc((size_t)matrix->n, sizeof *factor->permuted);
     return factor;
 }
 
@@ -99,7 +97,6 @@ void ax_cholesky_free(ax_cholesky* factor)
     cholmod_free_dense(&factor->e, common);
     cholmod_free_dense(&factor->x, common);
     cholmod_finish(common);
-    ax_free(factor->permuted);
     ax_free(factor);
 }
 
@@ -127,43 +124,6 @@ void ax_cholesky_solve(ax_cholesky* factor, const double* b, double* x, int colu
     hold_to_one_thread();
     cholmod_solve2(CHOLMOD_A, factor->factor, &right, NULL, &factor->x, NULL, &factor->y, &factor->e, &factor->common);
     memcpy(x, factor->x->x, n * (size_t)columns * sizeof *x);
-    ++factor->counters.solves;
-}
-
-void ax_cholesky_solve3(ax_cholesky* factor, double (*x)[3])
-{
-    assert(factor->kind == AX_FACTOR_SIMPLICIAL && factor->factor->is_ll && !factor->factor->is_super);
-    int n = (int)factor->factor->n;
-    const int *start = factor->factor->p, *row = factor->factor->i, *count = factor->factor->nz;
-    const int* order = factor->factor->Perm;
-    const double* value = factor->factor->x;
-    double(*restrict y)[3] = factor->permuted;
-    for (int j = 0; j < n; ++j)
-        memcpy(y[j], x[order[j]], sizeof *y);
-
-    // L y = b, then L' x = y: each entry of the factor is read once for the three coordinates
-    for (int j = 0; j < n; ++j) {
-        int k = start[j], end = k + count[j];
-        double d = value[k], a = y[j][0] / d, b = y[j][1] / d, c = y[j][2] / d;
-        y[j][0] = a, y[j][1] = b, y[j][2] = c;
-        for (++k; k < end; ++k) {
-            double l = value[k];
-            double* to = y[row[k]];
-            to[0] -= l * a, to[1] -= l * b, to[2] -= l * c;
-        }
-    }
-    for (int j = n - 1; j >= 0; --j) {
-        int k = start[j], end = k + count[j];
-        double d = value[k], a = y[j][0], b = y[j][1], c = y[j][2];
-        for (++k; k < end; ++k) {
-            double l = value[k];
-            const double* from = y[row[k]];
-            a -= l * from[0], b -= l * from[1], c -= l * from[2];
-        }
-        y[j][0] = a / d, y[j][1] = b / d, y[j][2] = c / d;
-    }
-    for (int j = 0; j < n; ++j)
-        memcpy(x[order[j]], y[j], sizeof *y);
     ++factor->counters.solves;
 }
 

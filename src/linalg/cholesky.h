@@ -8,7 +8,6 @@ typedef struct ax_cholesky ax_cholesky;
 
 typedef enum ax_factor_kind {
     AX_FACTOR_SUPERNODAL, // dense blocks: best when factored often
-    AX_FACTOR_SIMPLICIAL, // columns: best for many solves with one factor
     AX_FACTOR_ONCE,       // whichever is quicker for one factorisation and a few solves, by the work per entry
     AX_FACTOR_PANELS,     // exact dense blocks without fill of their own, to be repacked by ax_panels_make
 } ax_factor_kind;
@@ -24,9 +23,6 @@ bool ax_cholesky_factor(ax_cholesky* factor, const ax_sparse* matrix);
 
 // x = A^-1 b for `columns` right-hand sides stored one after the other; x may be b.
 void ax_cholesky_solve(ax_cholesky* factor, const double* b, double* x, int columns);
-
-// x = A^-1 x for three interleaved right-hand sides (x, y, z per row) in one pass over a simplicial factor.
-void ax_cholesky_solve3(ax_cholesky* factor, double (*x)[3]);
 
 typedef struct ax_cholesky_counters {
     int analyses, factorisations, solves;
