@@ -4,12 +4,15 @@
 #include "ax/design.h"
 #include "ax/export.h"
 
-// A picture of one state of a design, panels coloured by lambda on the fixed scale 1 to 2. Flat: seen from above with a scale
-// bar; deployed and simulated: in perspective with a ground shadow. width, height in pixels, 64 to 8192.
+// A picture of one state of a design. Flat: seen from above with a scale bar; deployed (the default) and simulated: in perspective
+// over a ground with a grid. Panels are coloured by lambda on the fixed scale 1 to 2, simulated ones by their edges' axial forces. z
+// is up. width, height in pixels, 64 to 8192 (else AX_USAGE). AX_BAD_INPUT when the state is missing; AX_FAILED when the file
+// cannot be written.
 ax_status ax_picture_design(const ax_design* design, ax_state state, int width, int height, const char* path,
                             ax_error* error);
 
 typedef enum ax_field { AX_FIELD_CURVATURE, AX_FIELD_SCALE } ax_field;
-// A picture of a screened target surface coloured by mean curvature (blue: H <= 0, orange: H > 0) or by lambda, with legend.
+// A picture of a screened target surface coloured by mean curvature (blue and hatched: H <= 0, orange: H > 0) or by lambda (hatched
+// outside 1 to 2), with legend. AX_BAD_INPUT when lambda is asked of a surface that was not flattened.
 ax_status ax_picture_screen(const ax_mesh* mesh, const ax_screen* screen, ax_field field, int width, int height,
                             const char* path, ax_error* error);

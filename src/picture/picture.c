@@ -1,0 +1,422 @@
+#include "ax/picture.h"
+
+#include "base/file.h"
+#include "mesh/geometry.h"
+#include "picture/legend.h"
+#include "picture/panels.h"
+#include "picture/render.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double degree = AX_PI / 180;
+enum { SMALLEST = 64, LARGEST = 8192 };
+
+typedef struct sheet {
+    int width, height;
+    double unit;        // pixels of a unit of text and lines
+    bool legend, title; // enough room for them
+} sheet;
+
+static ax_status make_sheet(int width, int height, sheet* out, ax_error* error)
+{
+    if (width < SMALLEST || width > LARGEST || height < SMALLEST || height > LARGEST)
+        return ax_fail(error, AX_USAGE, "A picture must be %d to %d pixels wide and high, not %d x %d.", SMALLEST,
+                       LARGEST, width, height);
+    *out = (sheet){
+        .width = width,
+        .height = height,
+        .unit = fmax(0.9, fmin(width / 1280.0, height / 800.0)),
+        .legend = width >= 480 && height >= 320,
+        .title = width >= 320 && height >= 200,
+    };
+    return AX_OK;
+}
+
+static cairo_status_t write_stream(void* stream, const unsigned char* bytes, unsigned count)
+{
+    return fwrite(bytes, 1, count, stream) == count ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+}
+
+static ax_status save(cairo_surface_t* surface, const char* path, ax_error* error)
+{
+    ax_file file;
+    ax_status status = ax_file_begin(&file, path, error);
+    if (status != AX_OK)
+        return status;
+    cairo_status_t written = cairo_surface_write_to_png_stream(surface, write_stream, file.stream);
+    if (written == CAIRO_STATUS_SUCCESS || written == CAIRO_STATUS_WRITE_ERROR)
+        return ax_file_commit(&file, error); // which names what the disk said
+    ax_file_abandon(&file);
+    return ax_fail(error, AX_FAILED, "Cannot write %s: %s.", path, cairo_status_to_string(written));
+}
+
+// The space left for the model by the title and the margins: 88 % of the width, 86 % in the flat view.
+static ax_rectangle free_space(const sheet* s, double share)
+{
+    double side = (1 - share) / 2 * s->width, top = s->title ? 48 * s->unit : 0.06 * s->height;
+    double bottom = 0.05 * s->height;
+    return (ax_rectangle){side, top, s->width - 2 * side, s->height - top - bottom};
+}
+
+// How a model is looked at: a shell seen from above and from the front, with its outer side towards the eye.
+typedef struct stance {
+    double azimuth; // of the eye
+    int front;      // side of the faces that faces the eye, as in ax_panels_look
+} stance;
+
+// `normal`: sum of the faces' area normals, any length.
+static stance take_stance(const double normal[3])
+{
+    stance s = {.azimuth = -62 * degree, .front = 1};
+    double length = ax_norm3(normal);
+    if (length > 0 && fabs(normal[2]) < 0.5 * length) // a shell that stands upright is seen from its outer side
+        s.azimuth = atan2(normal[1], normal[0]) + 28 * degree;
+    else if (normal[2] < 0) // one that hangs down is looked into
+        s.front = -1;
+    return s;
+}
+
+// Light from over the left shoulder of the eye.
+static void turn(const double from[3], double angle, double to[3])
+{
+    double c = cos(angle), s = sin(angle);
+    to[0] = c * from[0] - s * from[1], to[1] = s * from[0] + c * from[1], to[2] = from[2];
+}
+
+static ax_light_setup light_setup(const stance* s, double ground, double thickness)
+{
+    static const double key[3] = {-0.80, -0.22, 1.15}, fill[3] = {1, -1, 0.6};
+    ax_light_setup setup = {.ground = ground,
+                            .thickness = thickness,
+                            .contact_blur = 0.003,
+                            .height_blur = 0.13,
+                            .shadow_size = 768,
+                            .self_shadow = true};
+    turn(key, s->azimuth + 62 * degree, setup.key);
+    turn(fill, s->azimuth + 62 * degree, setup.fill);
+    return setup;
+}
+
+// A picture in the making: pixels that ax_render fills and cairo then writes on.
+static cairo_surface_t* render(const sheet* s, const ax_scene* scene, const ax_view* view, const ax_light* light,
+                               const ax_render_setup* setup)
+{
+    cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, s->width, s->height);
+    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS)
+        return surface;
+    cairo_surface_flush(surface);
+    ax_render(scene, view, light, setup, s->width, s->height, (uint32_t*)(void*)cairo_image_surface_get_data(surface),
+              cairo_image_surface_get_stride(surface) / 4);
+    cairo_surface_mark_dirty(surface);
+    return surface;
+}
+
+static void write_lengths(char* text, size_t size, const double* lengths, int count, const char* unit)
+{
+    double largest = 0;
+    for (int k = 0; k < count; ++k)
+        largest = fmax(largest, lengths[k]);
+    size_t used = 0;
+    for (int k = 0; k < count; ++k) {
+        char number[32];
+        ax_write_number(number, sizeof number, lengths[k], ax_decimals_for(largest));
+        int more = snprintf(text + used, size - used, "%s%s", k ? " \u00d7 " : "", number);
+        used = used + (size_t)more < size ? used + (size_t)more : size - 1;
+    }
+    snprintf(text + used, size - used, "%s%s", *unit ? " " : "", unit);
+}
+
+static void extents(int count, const double (*places)[3], double size[3])
+{
+    for (int c = 0; c < 3; ++c) {
+        double lo = INFINITY, hi = -INFINITY;
+        for (int i = 0; i < count; ++i)
+            lo = fmin(lo, places[i][c]), hi = fmax(hi, places[i][c]);
+        size[c] = hi - lo;
+    }
+}
+
+// Value that a share of the values does not exceed. The order among equals does not matter.
+static int compare_doubles(const void* a, const void* b)
+{
+    double x = *(const double*)a, y = *(const double*)b;
+    return (x > y) - (x < y);
+}
+
+static double quantile(double* values, int count, double share)
+{
+    if (count == 0)
+        return 0;
+    qsort(values, (size_t)count, sizeof *values, compare_doubles);
+    return values[(int)(share * (count - 1))];
+}
+
+// Symmetric range for signed values: rounded up from their 99th percentile, by magnitude. `values` is used up.
+static double signed_limit(double* values, int count)
+{
+    int kept = 0;
+    for (int i = 0; i < count; ++i)
+        if (isfinite(values[i]))
+            values[kept++] = fabs(values[i]);
+    double high = quantile(values, kept, 0.99);
+    return ax_palette_limit(high > 1e-300 ? high : 1);
+}
+
+static double force_limit(const ax_design* design)
+{
+    int count = 3 * design->linkage.triangle_count;
+    double* values = ax_copy(design->edge_forces, (size_t)count, sizeof *values);
+    double limit = signed_limit(values, count);
+    ax_free(values);
+    return limit;
+}
+
+static ax_legend design_legend(const ax_design* design, const ax_palette* palette)
+{
+    bool forces = palette->kind == AX_PALETTE_FORCE;
+    ax_legend legend = ax_legend_make(forces ? "Axial force, N" : "Scale factor \u03bb", palette);
+    if (forces)
+        legend.words[0] = "Compression", legend.words[1] = "Tension";
+    for (int t = 0; t < design->linkage.triangle_count; ++t)
+        for (int k = 0; k < (forces ? 3 : 1); ++k)
+            ax_legend_count(&legend, forces ? design->edge_forces[t][k] : design->scale[t], 1);
+    return legend;
+}
+
+static double mean_edge(const ax_linkage* linkage, const double (*places)[3])
+{
+    double sum = 0;
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int k = 0; k < 3; ++k)
+            sum += ax_distance3(places[linkage->triangles[t][k]], places[linkage->triangles[t][(k + 1) % 3]]);
+    return sum / (3 * linkage->triangle_count);
+}
+
+static void sum_of_normals(int count, const int (*faces)[3], const double (*places)[3], double sum[3])
+{
+    sum[0] = sum[1] = sum[2] = 0;
+    for (int f = 0; f < count; ++f) {
+        double a[3], b[3], normal[3];
+        ax_sub3(places[faces[f][1]], places[faces[f][0]], a);
+        ax_sub3(places[faces[f][2]], places[faces[f][0]], b);
+        ax_cross(a, b, normal);
+        for (int c = 0; c < 3; ++c)
+            sum[c] += normal[c];
+    }
+}
+
+// A third of every face counts for each of its corners.
+static void count_by_area(const ax_mesh* mesh, const double* values, ax_legend* legend)
+{
+    for (int f = 0; f < mesh->face_count; ++f)
+        for (int k = 0; k < 3; ++k)
+            ax_legend_count(legend, values[mesh->faces[f][k]], ax_face_area(mesh, f));
+}
+
+// Pixels of a length of 1 at the middle of the scene.
+static double pixels_at_middle(const ax_view* view)
+{
+    return view->scale * (view->perspective ? 1 / ax_norm3(view->eye) : 1);
+}
+
+static double fading(double low, double high, double x)
+{
+    return ax_clamp((x - low) / (high - low), 0, 1);
+}
+
+// Everything about a picture but its scene.
+typedef struct composition {
+    sheet sheet;
+    stance stance;
+    ax_view view;
+    ax_legend legend;
+    ax_light_setup light;
+    ax_render_setup render;
+    ax_scale_bar bar; // flat view only, else of length 0
+    double grid;      // distance of the ground's lines, in the document's unit
+    char title[64], text[128];
+    const char* unit_name; // "" if unknown
+} composition;
+
+// Fits the points of a scene into the sheet, clear of the legend and of what stands at the bottom right.
+static void compose(composition* c, bool flat, int count, const float (*points)[3], const ax_scene_frame* frame)
+{
+    const sheet* s = &c->sheet;
+    c->view = flat ? ax_view_along((const double[3]){0, 0, -1})
+                   : ax_view_from(c->stance.azimuth, 36 * degree, 0.5 / sin(15 * degree));
+    ax_rectangle space = free_space(s, flat ? 0.86 : 0.88), obstacles[2];
+    ax_rectangle card = ax_legend_card(&c->legend, s->height, s->unit);
+    double gap = 16 * s->unit;
+    obstacles[0] = (ax_rectangle){0, card.y - gap, card.x + card.width + gap, s->height - card.y + gap};
+    obstacles[1] = (ax_rectangle){s->width - 160 * s->unit, s->height - 56 * s->unit, 160 * s->unit, 56 * s->unit};
+    ax_view_frame(&c->view, count, points, space, s->legend ? 2 : 0, obstacles);
+    c->render.pixel = fmax(1, s->unit);
+    c->grid = ax_round_length(0.12 * frame->size); // some ten cells over the model
+    c->render.grid = c->grid / frame->size;
+    c->render.grid_fade = 1.1;
+    if (flat)
+        c->bar = ax_scale_bar_make(c->view.scale / frame->size, 120 * s->unit);
+}
+
+static ax_status paint(const composition* c, const ax_scene* scene, const char* path, ax_error* error)
+{
+    const sheet* s = &c->sheet;
+    ax_light light = ax_light_make(scene, &c->light);
+    cairo_surface_t* surface = render(s, scene, &c->view, &light, &c->render);
+    ax_light_free(&light);
+    cairo_t* cr = cairo_create(surface);
+    if (s->legend)
+        ax_legend_draw(cr, &c->legend, s->height, s->unit);
+    if (s->title)
+        ax_title_draw(cr, c->title, c->text, s->unit);
+    if (s->legend && c->bar.length > 0)
+        ax_scale_bar_draw(cr, &c->bar, c->unit_name, s->width, s->height, s->unit);
+    else if (s->legend)
+        ax_grid_note_draw(cr, c->grid, c->unit_name, s->width, s->height, s->unit);
+    cairo_status_t drawn = cairo_status(cr);
+    cairo_destroy(cr);
+    ax_status status = drawn == CAIRO_STATUS_SUCCESS
+                           ? save(surface, path, error)
+                           : ax_fail(error, AX_FAILED, "Cannot draw a picture of %d x %d pixels: %s.", s->width,
+                                     s->height, cairo_status_to_string(drawn));
+    cairo_surface_destroy(surface);
+    return status;
+}
+
+static void describe(const ax_design* design, ax_state state, int hinge_count, const double (*places)[3],
+                     composition* c)
+{
+    static const char* const names[] = {"Deployed", "Flat", "Deployed", "Simulated"};
+    snprintf(c->title, sizeof c->title, "%s", names[state]);
+    c->unit_name = ax_unit_name(design->unit);
+    char number[32], text[96];
+    if (state == AX_STATE_SIMULATED) {
+        bool inflation = design->load.kind == AX_LOAD_INFLATION;
+        double amount = inflation ? design->load.pressure : design->load.density;
+        ax_write_number(number, sizeof number, amount, amount < 10 ? 1 : 0);
+        snprintf(text, sizeof text, "%s %s %s", inflation ? "inflation" : "gravity", number,
+                 inflation ? "Pa" : "kg/m\u00b2");
+    } else {
+        double size[3];
+        extents(hinge_count, places, size);
+        write_lengths(text, sizeof text, size, state == AX_STATE_FLAT ? 2 : 3, c->unit_name);
+    }
+    snprintf(c->text, sizeof c->text, "%d panels, %s", design->linkage.triangle_count, text);
+}
+
+ax_status ax_picture_design(const ax_design* design, ax_state state, int width, int height, const char* path,
+                            ax_error* error)
+{
+    composition c = {0};
+    ax_status status = make_sheet(width, height, &c.sheet, error);
+    if (status != AX_OK)
+        return status;
+    if (state == AX_STATE_SIMULATED && !design->simulated)
+        return ax_fail(error, AX_BAD_INPUT,
+                       "The design has no simulated state. Simulate it first, or choose flat or deployed.");
+    bool flat = state == AX_STATE_FLAT;
+    const ax_linkage* linkage = &design->linkage;
+    int hinges = linkage->hinge_count;
+    double(*places)[3] = ax_calloc((size_t)hinges, sizeof *places);
+    float(*points)[3] = ax_alloc((size_t)hinges, sizeof *points);
+    for (int h = 0; h < hinges; ++h)
+        if (flat)
+            memcpy(places[h], design->flat[h], sizeof design->flat[h]);
+        else
+            memcpy(places[h], (state == AX_STATE_SIMULATED ? design->simulated : design->deployed)[h],
+                   sizeof places[h]);
+    describe(design, state, hinges, (const double(*)[3])places, &c);
+
+    ax_scene scene = {0};
+    if (!ax_scene_find_frame(hinges, (const double(*)[3])places, &scene.frame)) {
+        ax_free(places), ax_free(points);
+        return ax_fail(error, AX_BAD_INPUT, "A hinge of the design has no finite place. Make the design again.");
+    }
+    double lowest = INFINITY;
+    for (int h = 0; h < hinges; ++h)
+        for (int k = 0; k < 3; ++k) {
+            places[h][k] = (places[h][k] - scene.frame.centre[k]) / scene.frame.size;
+            points[h][k] = (float)places[h][k];
+            lowest = k == 2 ? fmin(lowest, places[h][2]) : lowest;
+        }
+    double normal[3], edge = mean_edge(linkage, (const double(*)[3])places);
+    sum_of_normals(linkage->triangle_count, (const int(*)[3])linkage->triangles, (const double(*)[3])places, normal);
+    c.stance = take_stance(normal);
+
+    bool forces = state == AX_STATE_SIMULATED && design->edge_forces;
+    ax_panels_look look = {
+        .front = c.stance.front,
+        .palette = {forces ? AX_PALETTE_FORCE : AX_PALETTE_SCALE, forces ? force_limit(design) : 1},
+        .scale = design->scale,
+        .edge_forces = (const double(*)[3])design->edge_forces,
+    };
+    c.legend = design_legend(design, &look.palette);
+    compose(&c, flat, hinges, (const float(*)[3])points, &scene.frame);
+    look.edge_pixels = edge * pixels_at_middle(&c.view) / c.render.pixel;
+    ax_panels_add(&scene, linkage, (const double(*)[3])places, edge, &look);
+    ax_free(places), ax_free(points);
+
+    c.light = light_setup(&c.stance, lowest - 0.1 * edge, 0.11 * edge);
+    c.render.shadow = 0.46;
+    if (flat) { // a sheet lying a little above the ground
+        const double key[3] = {-0.35, 0.55, 1.4};
+        memcpy(c.light.key, key, sizeof key);
+        c.light.ground = lowest - 0.35 * edge;
+        c.light.contact_blur = fmax(0.16 * edge, 1 / c.view.scale), c.light.height_blur = 0;
+        c.light.self_shadow = false;
+        c.light.shadow_size = (int)ax_clamp(fmax(width, height), 512, 4096);
+    }
+    c.render.outlines =
+        (forces ? 0.2 : 0.45) * fading(2, 6, look.edge_pixels) * (0.35 + 0.65 * fading(6, 14, look.edge_pixels));
+    status = paint(&c, &scene, path, error);
+    ax_scene_free(&scene);
+    return status;
+}
+
+ax_status ax_picture_screen(const ax_mesh* mesh, const ax_screen* screen, ax_field field, int width, int height,
+                            const char* path, ax_error* error)
+{
+    composition c = {0};
+    ax_status status = make_sheet(width, height, &c.sheet, error);
+    if (status != AX_OK)
+        return status;
+    bool curvature = field == AX_FIELD_CURVATURE;
+    const double* values = curvature ? screen->curvature : screen->scale;
+    if (!values)
+        return ax_fail(error, AX_BAD_INPUT,
+                       "The surface was not flattened, so it has no scale factors to show. Choose the curvature.");
+    assert(screen->vertex_count == mesh->vertex_count);
+    int vertices = mesh->vertex_count;
+    double normal[3], size[3], one = 1;
+    sum_of_normals(mesh->face_count, (const int(*)[3])mesh->faces, (const double(*)[3])mesh->positions, normal);
+    c.stance = take_stance(normal);
+
+    ax_palette palette = {curvature ? AX_PALETTE_CURVATURE : AX_PALETTE_SCALE, one};
+    if (curvature) {
+        double* magnitudes = ax_copy(values, (size_t)vertices, sizeof *magnitudes);
+        palette.limit = signed_limit(magnitudes, vertices);
+        ax_free(magnitudes);
+    }
+    c.legend = ax_legend_make(curvature ? "Mean curvature H" : "Scale factor \u03bb", &palette);
+    if (curvature)
+        c.legend.words[0] = "Dips inward", c.legend.words[1] = "Bulges outward";
+    count_by_area(mesh, values, &c.legend);
+    extents(vertices, (const double(*)[3])mesh->positions, size);
+    snprintf(c.title, sizeof c.title, "Target surface");
+    c.unit_name = "";
+    write_lengths(c.text, sizeof c.text, size, 3, "");
+
+    ax_scene scene = ax_scene_of_surface(mesh, values, &palette, c.stance.front);
+    compose(&c, false, scene.vertex_count, (const float(*)[3])scene.places, &scene.frame);
+    double lowest = INFINITY;
+    for (int v = 0; v < vertices; ++v)
+        lowest = fmin(lowest, scene.places[v][2]);
+    c.light = light_setup(&c.stance, lowest - 0.002, 0.01);
+    c.render.shadow = 0.36;
+    status = paint(&c, &scene, path, error);
+    ax_scene_free(&scene);
+    return status;
+}
