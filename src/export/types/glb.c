@@ -119,6 +119,11 @@ static ax_status write_glb(const ax_design* design, ax_state state, const ax_exp
     char remark[80];
     ax_export_remark(design, state, remark);
     json_t* scene = make_scene(remark, count, centre, (const float(*)[3])bounds);
+    if (!scene) { // infinite in single precision
+        ax_free(corners);
+        fclose(out);
+        return ax_fail(error, AX_FAILED, "The coordinates are too large for a glTF file. Use .ply instead.");
+    }
     char* text = json_dumps(scene, JSON_COMPACT);
     json_decref(scene);
 

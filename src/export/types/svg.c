@@ -33,7 +33,7 @@ static void to_sheet(const sheet* s, const double place[2], double out[2])
 // A tenth of a micrometre, without trailing zeros: a file of a million panels is a third shorter.
 static void put_mm(FILE* out, double mm)
 {
-    char text[40];
+    char text[330]; // room for any double
     int length = snprintf(text, sizeof text, "%.4f", mm);
     while (text[length - 1] == '0')
         --length;
