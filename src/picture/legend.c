@@ -50,6 +50,20 @@ double ax_round_length(double x)
     return power * (over >= 5 ? 5 : (over >= 2 ? 2 : 1));
 }
 
+#ifdef AX_SANITIZED
+// fontconfig holds on to some patterns until the process ends, with no way to say when we are done.
+const char* __lsan_default_suppressions(void);
+const char* __lsan_default_suppressions(void)
+{
+    return "leak:libfontconfig";
+}
+const char* __lsan_default_options(void);
+const char* __lsan_default_options(void)
+{
+    return "print_suppressions=0";
+}
+#endif
+
 // Text without hinting and colour fringes, so that it looks the same on every system with the same fonts.
 static void set_font(cairo_t* cr, bool bold, double size)
 {
