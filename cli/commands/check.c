@@ -1,0 +1,150 @@
+// auxshell check: can this surface become a deployable linkage?
+#include "options.h"
+#include "output.h"
+#include "progress.h"
+#include "report.h"
+
+#include "ax/picture.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct arguments {
+    const char* target;
+    bool json;
+    const char* png;
+} arguments;
+
+static const command_option options[] = {
+    {.name = "TARGET",
+     .text = "the surface: OBJ, STL, PLY, OFF or another mesh format",
+     .kind = OPTION_TEXT,
+     .operand = true,
+     .required = true,
+     .offset = offsetof(arguments, target)},
+    {.name = "--json", .text = "print every figure as JSON", .kind = OPTION_FLAG, .offset = offsetof(arguments, json)},
+    {.name = "--png",
+     .value = "DIR",
+     .text = "write pictures of the mean curvature and of the scale factors: DIR/curvature.png and DIR/scale.png",
+     .kind = OPTION_TEXT,
+     .offset = offsetof(arguments, png)},
+};
+
+static const char* const verdict_names[] = {
+    [AX_DEPLOYABLE] = "deployable",
+    [AX_DEPLOYABLE_PROJECTED] = "deployable after projection",
+    [AX_NOT_DEPLOYABLE] = "not deployable",
+};
+
+static void print_screen(const char* path, const ax_mesh* mesh, const ax_mesh_repairs* repairs, const ax_screen* s)
+{
+    double size[3], largest = 0;
+    for (int c = 0; c < 3; ++c)
+        size[c] = s->bounds[1][c] - s->bounds[0][c];
+    for (int c = 0; c < 3; ++c)
+        largest = fmax(largest, size[c]);
+    printf("%s\n", path);
+    printf("  Mesh            %d vertices, %d faces, %d vertices on the rim\n", mesh->vertex_count, mesh->face_count,
+           s->rim_count);
+    printf("  Mended          ");
+    repairs_print(repairs, stdout);
+    printf("  Size            %.5g x %.5g x %.5g; area %.5g, rim %.5g, in the file's unit\n", size[0], size[1], size[2],
+           s->area, s->rim_length);
+    printf("  Mean curvature  median %.4g, smallest %.4g, 1 %% below %.4g, 5 %% above %.4g\n", s->curvature_median,
+           s->curvature_min, s->curvature_q01, s->curvature_q95);
+    if (s->curvature_nonpositive_share > 0)
+        printf("  H <= 0          on %.1f %% of the area, around (%.3f, %.3f, %.3f)\n",
+               100 * s->curvature_nonpositive_share, s->curvature_worst_place[0], s->curvature_worst_place[1],
+               s->curvature_worst_place[2]);
+    else
+        printf("  H <= 0          nowhere\n");
+    if (s->height_field)
+        printf("  Height field    yes, it bulges towards %cz\n", s->gravity_direction < 0 ? '-' : '+');
+    else
+        printf("  Height field    no: parts of it lie above others, so that gravity cannot deploy it\n");
+    if (isfinite(s->scale_ratio))
+        printf("  Scale factors   a range of %.4f is needed: %.4f to %.4f%s\n", s->scale_ratio, s->scale_lo,
+               s->scale_hi, s->scale_fits ? "" : ", outside the band: it needs cones or several pieces");
+    printf("  Deploys         %s%s\n",
+           s->by_inflation && s->by_gravity ? "by inflation and by gravity"
+           : s->by_inflation                ? "by inflation"
+           : s->by_gravity                  ? "by gravity"
+                                            : "not",
+           s->verdict == AX_DEPLOYABLE_PROJECTED ? ", after projection" : "");
+    printf("  Verdict         ");
+    print_wrapped(stdout, 18, 18, s->words);
+}
+
+static json_t* screen_json(const ax_mesh* mesh, const ax_mesh_repairs* repairs, const ax_screen* s)
+{
+    json_t* curvature = json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:o}", "min", json_number(s->curvature_min), "q01", json_number(s->curvature_q01),
+        "median", json_number(s->curvature_median), "q95", json_number(s->curvature_q95), "nonpositive_share",
+        json_number(s->curvature_nonpositive_share), "worst_place", json_numbers(s->curvature_worst_place, 3));
+    json_t* scale = json_pack("{s:o, s:o, s:o, s:b, s:b}", "ratio", json_number(s->scale_ratio), "min",
+                              json_number(s->scale_lo), "max", json_number(s->scale_hi), "fits", (int)s->scale_fits,
+                              "needs_cones", (int)(isfinite(s->scale_ratio) && !s->scale_fits));
+    return json_pack("{s:s, s:s, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:o, s:b, s:b, s:o}", "verdict",
+                     verdict_names[s->verdict], "words", s->words, "vertices", mesh->vertex_count, "faces",
+                     mesh->face_count, "rim_vertices", s->rim_count, "rim_length", json_number(s->rim_length), "area",
+                     json_number(s->area), "diagonal", json_number(s->diagonal), "bounds",
+                     json_pack("[o, o]", json_numbers(s->bounds[0], 3), json_numbers(s->bounds[1], 3)), "curvature",
+                     curvature, "scale", scale, "height_field", (int)s->height_field, "gravity_direction",
+                     json_number(s->gravity_direction), "by_inflation", (int)s->by_inflation, "by_gravity",
+                     (int)s->by_gravity, "repairs", repairs_json(repairs));
+}
+
+static ax_status draw(const arguments* a, const ax_mesh* mesh, const ax_screen* screen, ax_error* error)
+{
+    char path[PATH_MAX];
+    ax_status status = output_make_folder(a->png, error);
+    if (status == AX_OK)
+        status = output_join(a->png, "curvature.png", path, sizeof path, error);
+    if (status == AX_OK)
+        status = ax_picture_screen(mesh, screen, AX_FIELD_CURVATURE, 1600, 1200, path, error);
+    if (status == AX_OK)
+        status = output_join(a->png, "scale.png", path, sizeof path, error);
+    if (status == AX_OK && screen->scale)
+        status = ax_picture_screen(mesh, screen, AX_FIELD_SCALE, 1600, 1200, path, error);
+    return status;
+}
+
+static ax_status run(const void* given, ax_error* error)
+{
+    const arguments* a = given;
+    ax_mesh mesh = {0};
+    ax_mesh_repairs repairs;
+    ax_screen screen = {0};
+    ax_status status = a->png ? output_check_folder(a->png, error) : AX_OK;
+    if (status == AX_OK)
+        status = ax_mesh_read(a->target, NULL, &mesh, &repairs, error);
+    if (status == AX_OK)
+        status = ax_target_screen(&mesh, NULL, progress_reporter(), &screen, error);
+    progress_end();
+    if (status == AX_OK && a->png)
+        status = draw(a, &mesh, &screen, error);
+    if (status == AX_OK) {
+        if (a->json)
+            json_print(screen_json(&mesh, &repairs, &screen), stdout);
+        else
+            print_screen(a->target, &mesh, &repairs, &screen);
+        if (screen.verdict == AX_NOT_DEPLOYABLE)
+            status = AX_CANNOT_REALISE;
+    }
+    ax_screen_free(&screen);
+    ax_mesh_free(&mesh);
+    return status;
+}
+
+const command command_check = {
+    .name = "check",
+    .summary = "tell whether a surface can become a deployable linkage",
+    .text = "Screens a target surface: faults of the mesh, mean curvature, the range of scale factors that a conformal "
+            "map needs, and by which load it deploys. Ends with 0 if it deploys as it is or after projection, with 4 "
+            "if not.",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .size = sizeof(arguments),
+    .run = run,
+};

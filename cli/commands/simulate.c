@@ -1,0 +1,120 @@
+// auxshell simulate: deploys the flat state of a document again, under another load or other supports.
+#include "options.h"
+#include "output.h"
+#include "progress.h"
+#include "report.h"
+
+#include "ax/document.h"
+
+#include <math.h>
+
+typedef struct arguments {
+    const char* document;
+    ax_load_kind load; // AX_LOAD_NONE, 0: as in the document
+    double density, pressure;
+    const char* support;
+} arguments;
+
+static const char* const loads[] = {"gravity", "inflation"};
+
+static const command_option options[] = {
+    {.name = "P.auxshell",
+     .text = "the document; its simulated state is replaced",
+     .kind = OPTION_TEXT,
+     .operand = true,
+     .required = true,
+     .offset = offsetof(arguments, document)},
+    {.name = "--load",
+     .text = "what deploys it",
+     .kind = OPTION_CHOICE,
+     .choices = loads,
+     .choice_count = 2,
+     .first = AX_LOAD_GRAVITY,
+     .fallback = "that of the document",
+     .offset = offsetof(arguments, load)},
+    {.name = "--density",
+     .value = "KG_M2",
+     .text = "gravity: mass of the panels",
+     .kind = OPTION_NUMBER,
+     .hi = INFINITY,
+     .open = true,
+     .unit = "kg/m2",
+     .fallback = "that of the document",
+     .offset = offsetof(arguments, density)},
+    {.name = "--pressure",
+     .value = "PA",
+     .text = "inflation: pressure",
+     .kind = OPTION_NUMBER,
+     .hi = INFINITY,
+     .open = true,
+     .unit = "Pa",
+     .fallback = "that of the document",
+     .offset = offsetof(arguments, pressure)},
+    {.name = "--support",
+     .value = "rim|SELECTION",
+     .text = "hinges held at their deployed places: rim, rim/N for every Nth rim hinge, or hinge numbers and ranges "
+             "such as 0-12,40,77",
+     .kind = OPTION_TEXT,
+     .fallback = "that of the document",
+     .offset = offsetof(arguments, support)},
+};
+
+static ax_load chosen_load(const arguments* a, const ax_load* present)
+{
+    const ax_load usual = ax_design_options_default().load;
+    ax_load load = *present;
+    if (load.kind == AX_LOAD_NONE)
+        load = usual;
+    if (a->load)
+        load.kind = a->load;
+    if (a->density > 0)
+        load.density = a->density;
+    if (a->pressure > 0)
+        load.pressure = a->pressure;
+    return load;
+}
+
+static ax_status run(const void* given, ax_error* error)
+{
+    const arguments* a = given;
+    ax_design design = {0};
+    ax_status status = ax_document_load(a->document, &design, error);
+    if (status == AX_OK)
+        status = output_check(a->document, NULL, error);
+    ax_load load = chosen_load(a, &design.load);
+    if (status == AX_OK && a->density > 0 && load.kind != AX_LOAD_GRAVITY)
+        status = ax_fail(error, AX_USAGE, "--density belongs to --load gravity.");
+    if (status == AX_OK && a->pressure > 0 && load.kind != AX_LOAD_INFLATION)
+        status = ax_fail(error, AX_USAGE, "--pressure belongs to --load inflation.");
+    if (status == AX_OK && a->support)
+        status = ax_design_set_supports(&design, a->support, error);
+    if (status == AX_OK)
+        status = ax_design_simulate(&design, &load, progress_reporter(), error);
+    progress_end();
+    if (progress_cancelled())
+        status = AX_CANCELLED;
+    if (status == AX_OK)
+        status = ax_document_save(a->document, &design, error);
+    if (status == AX_OK) {
+        char words[96];
+        load_words(&design.load, words, sizeof words);
+        printf("Deployed %d triangles from flat by %s: %.4f L rms, %.3f L at most from the design; %.2f s\n",
+               design.linkage.triangle_count, words, design.report.simulated_rms_over_L,
+               design.report.simulated_max_over_L, design.report.seconds_deploy);
+        report_print(&design, stdout);
+    }
+    ax_design_free(&design);
+    return status;
+}
+
+const command command_simulate = {
+    .name = "simulate",
+    .summary = "deploy the flat state of a document again, under another load or other supports",
+    .text = "Simulates the deployment from the flat state to an exact rigid equilibrium. It reads the flat state, the "
+            "places of the supports and the load, nothing else of the deployed state. If no exact state is reached, "
+            "the document stays as it was.",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .size = sizeof(arguments),
+    .run = run,
+};

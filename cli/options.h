@@ -1,0 +1,69 @@
+// Subcommands and their options as data: these tables drive parsing, range errors, --help and docs/command.md.
+#pragma once
+
+#include "ax/base.h"
+
+#include <stdio.h>
+
+typedef enum option_kind {
+    OPTION_FLAG,    // bool
+    OPTION_INTEGER, // int, lo to hi
+    OPTION_NUMBER,  // double, lo to hi
+    OPTION_BAND,    // double[2], lo <= first < second <= hi, written FIRST,SECOND
+    OPTION_CHOICE,  // int: `first` plus the place of the word in `choices`
+    OPTION_TEXT,    // const char*, as given
+    OPTION_OTHER,   // what `parse` makes of it
+} option_kind;
+
+typedef struct command_option {
+    const char* name;  // "--triangles"; an operand has its placeholder here: "TARGET"
+    const char* value; // placeholder of the value, NULL for flags and operands
+    const char* text;  // sentences; range, unit and default are added when shown
+    option_kind kind;
+    bool operand, required;
+    size_t offset; // of the value in the command's arguments
+    double lo, hi; // both belong to the range, but with `open` lo does not; hi INFINITY: no upper end
+    bool open;
+    const char* unit; // NULL: a pure number
+    const char* const* choices;
+    int choice_count, first;
+    // Writes to `value` and returns NULL, or returns what it expects: "an angle in degrees, or edge".
+    const char* (*parse)(const char* text, void* value);
+    const char* fallback; // the default in words; NULL: shown from the default arguments; "": none to show
+    const char* excludes; // an option that cannot be given together with this one
+} command_option;
+
+// Takes one row of a list: a name and what it means.
+typedef void (*list_row)(const char* name, const char* text, FILE* out);
+
+typedef struct command {
+    const char* name;
+    const char* summary; // one line
+    const char* text;    // paragraphs, separated by empty lines
+    const command_option* options;
+    int option_count;
+    size_t size;                       // of the arguments
+    void (*defaults)(void* arguments); // fills zeroed arguments; NULL: zeros are the defaults
+    ax_status (*run)(const void* arguments, ax_error* error);
+    // Something to list after the options, or NULL: calls `row` for each entry.
+    const char* list_title;
+    void (*list)(list_row row, FILE* out);
+} command;
+
+// All subcommands, sorted by name; the table is written by the build from the files in commands/.
+const command* const* commands(int* count);
+
+// Fills `arguments` (command->size bytes) from the words after the subcommand. AX_USAGE names the word, its range, and the
+// nearest known option.
+ax_status command_parse(const command* command, int count, char** words, void* arguments, ax_error* error);
+// True if --help or -h is among the words before "--".
+bool command_wants_help(int count, char** words);
+
+void command_print_help(const command* command, FILE* out);
+void command_print_reference(const command* command, FILE* out); // as a section of Markdown
+
+// Prints a text wrapped at 100 columns; lines after the first are indented.
+void print_wrapped(FILE* out, int column, int indent, const char* text);
+
+// The candidate with the fewest changed letters, or NULL if none is near.
+const char* nearest_word(const char* word, int count, const char* const* candidates);
