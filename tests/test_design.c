@@ -231,6 +231,43 @@ static void the_hemisphere_is_reached_at_the_very_limit(void** state)
     ax_design_free(&d);
 }
 
+typedef struct patience {
+    int reports, last; // it gives up at report `last`
+    double fraction;
+} patience;
+
+static bool lose_patience(void* context, const char* stage, double fraction, double residual)
+{
+    patience* p = context;
+    (void)residual;
+    assert_true(stage && *stage);
+    assert_true(fraction >= p->fraction - 1e-12 && fraction <= 1 + 1e-12); // it never goes back
+    p->fraction = fraction;
+    return ++p->reports != p->last;
+}
+
+static void cancelling_at_any_report_leaves_nothing(void** state)
+{
+    (void)state;
+    ax_mesh cap = shape_cap(10, 0.9);
+    ax_design_options options = ax_design_options_default();
+    options.triangles = 150;
+    ax_design d;
+    patience whole = {.last = -1};
+    assert_int_equal(ax_design_from_target(&cap, &options, &(ax_progress){lose_patience, &whole}, &d, NULL), AX_OK);
+    ax_design_free(&d);
+    assert_true(whole.reports > 5);
+    for (int last = 1; last <= whole.reports; last += whole.reports / 40 + 1) {
+        patience p = {.last = last};
+        assert_int_equal(ax_design_from_target(&cap, &options, &(ax_progress){lose_patience, &p}, &d, NULL),
+                         AX_CANCELLED);
+        assert_int_equal(p.reports, last); // it does not go on asking
+        assert_int_equal(d.linkage.triangle_count, 0);
+        assert_null(d.flat);
+    }
+    ax_mesh_free(&cap);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -244,6 +281,7 @@ int main(void)
         cmocka_unit_test(far_away_and_small_models_lose_nothing),
         cmocka_unit_test(impossible_wishes_are_refused_by_name),
         cmocka_unit_test(the_hemisphere_is_reached_at_the_very_limit),
+        cmocka_unit_test(cancelling_at_any_report_leaves_nothing),
     };
     return cmocka_run_group_tests_name("design", tests, NULL, NULL);
 }
