@@ -15,7 +15,8 @@ ROOT = Path(__file__).resolve().parent.parent
 TESTS = ROOT / "tests"
 CODE = ("include", "src", "cli", "reader", "tests", "tools", "bench", "fuzz")
 
-PRESETS = ("release", "sanitize", "debug", "clang")  # warnings are errors in all of them
+PRESETS = ("release", "sanitize", "debug", "clang", "fuzz")  # warnings are errors in all of them
+FUZZ_RUNS, FUZZ_SECONDS = 20000, 30  # always the same inputs; longer runs are started by hand
 SECONDS = 1800  # for one step; each test that can hang has a limit of its own
 
 
@@ -32,14 +33,24 @@ class Step:
     output: str = ""
 
 
-def build_step(preset):
-    return Step(f"build/{preset}", ["bash", "-c", f'source "{ROOT}/tools/setup.sh" && build {preset}'])
+def build_step(preset, steps):
+    """Everything, so that every file compiles in it; of the fuzzers' build only what runs."""
+    targets = " ".join(Path(step.command[0]).name for step in steps) if preset == "fuzz" else ""
+    return Step(f"build/{preset}", ["bash", "-c", f'source "{ROOT}/tools/setup.sh" && build {preset} {targets}'])
 
 
 def static_steps():
     sources = sorted(str(path) for folder in CODE for path in (ROOT / folder).rglob("*.[ch]"))
     return [
         Step("format", ["clang-format", "--dry-run", "-Werror", *sources]),
+    ]
+
+
+def fuzz_steps():
+    return [
+        Step(f"fuzz/{path.stem}", [str(ROOT / "build/fuzz/bin" / path.stem), "-seed=1", f"-runs={FUZZ_RUNS}",
+                                   f"-max_total_time={FUZZ_SECONDS}", f"-artifact_prefix={ROOT}/build/fuzz/"], "fuzz")
+        for path in sorted((ROOT / "fuzz").glob("fuzz_*.c"))
     ]
 
 
@@ -121,8 +132,9 @@ def main():
     parser.add_argument("filter", nargs="?", default="", help="run only steps whose name contains this")
     arguments = parser.parse_args()
 
-    wanted = [step for step in [*static_steps(), *test_steps()] if arguments.filter in step.name]
-    presets = [p for p in PRESETS if arguments.filter in f"build/{p}" or any(step.needs == p for step in wanted)]
+    wanted = [step for step in [*static_steps(), *test_steps(), *fuzz_steps()] if arguments.filter in step.name]
+    named = {f"build/{preset}": preset for preset in PRESETS if arguments.filter in f"build/{preset}"}
+    presets = [p for p in PRESETS if p in named.values() or any(step.needs == p for step in wanted)]
     finished = []
 
     def finish(step):
@@ -130,7 +142,7 @@ def main():
         finished.append(step)
 
     for preset in presets:
-        finish(run(build_step(preset)))
+        finish(run(build_step(preset, [step for step in wanted if step.needs == preset])))
     # One at a time in the release build, where times are judged; side by side elsewhere.
     for step in wanted:
         if step.needs == "release" or not step.needs:
