@@ -51,8 +51,9 @@ static void print_figure(const ax_figure* figure, const ax_design* design, FILE*
     }
     unit_words(figure, design->unit, unit, sizeof unit);
     double limit = ax_figure_limit(figure, design);
-    fprintf(out, "  %-*s %*s%-4s", LABEL, figure->label, VALUE, value, unit);
+    fprintf(out, "  %-*s %*s%s", LABEL, figure->label, VALUE, value, unit);
     if (!isnan(limit)) {
+        fprintf(out, "%*s", 4 - (int)strlen(unit), "");
         const char* relation = figure->relation == AX_AT_MOST ? "at most" : "at least";
         number_words(figure, limit, number, sizeof number);
         if (figure->kind == AX_FIGURE_FLAG)
