@@ -171,8 +171,8 @@ class Awkward(CommandCase):
                         self.refuse(int(expected), word, *words, seconds=30)
                         continue
                     done = run(*words, seconds=60)
-                    self.assertIn(done.returncode, (0, 4), done.stderr)
-                    written = ["x.auxshell"] if words[0] == "design" and done.returncode == 0 else []
+                    self.assertIn(done.returncode, (0, 1, 4), done.stderr)  # 1: its deployment reached no exact state
+                    written = ["x.auxshell"] if words[0] == "design" and done.returncode < 4 else []
                     self.assertEqual(self.files(), written)
                     for name in written:
                         (self.folder / name).unlink()
@@ -244,7 +244,7 @@ class Trouble(CommandCase):
                 moved = [str(word).replace(str(self.folder), str(disk)) for word in words]
                 done = run(*moved)
                 self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-                self.assertIn("space", done.stderr.lower())
+                self.assertRegex(done.stderr, "space|full")
                 self.assertEqual(document.read_bytes(), content)
                 self.assertEqual(sorted(path.name for path in disk.iterdir()), ["a.auxshell", "ballast"])
 

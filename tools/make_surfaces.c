@@ -206,6 +206,29 @@ static ax_mesh saddle(void)
     return mesh;
 }
 
+// A dome over a square, whose sharp corners make it a case for --flatten polygon. Diagonals point to the centre, so that no
+// corner of the plan is cut off by a single face.
+static ax_mesh square_dome(void)
+{
+    enum { SIDE = 40 };
+    ax_mesh mesh = {.vertex_count = (SIDE + 1) * (SIDE + 1), .face_count = 2 * SIDE * SIDE};
+    mesh.positions = ax_alloc((size_t)mesh.vertex_count, sizeof *mesh.positions);
+    mesh.faces = ax_alloc((size_t)mesh.face_count, sizeof *mesh.faces);
+    for (int v = 0; v < mesh.vertex_count; ++v) {
+        double x = 4.0 * (v % (SIDE + 1)) / SIDE - 2, y = 4.0 * (v / (SIDE + 1)) / SIDE - 2;
+        memcpy(mesh.positions[v], (double[3]){x, y, 0.05 * (4 - x * x) * (4 - y * y)}, sizeof mesh.positions[v]);
+    }
+    int(*face)[3] = mesh.faces;
+    for (int row = 0; row < SIDE; ++row)
+        for (int column = 0; column < SIDE; ++column) {
+            int a = row * (SIDE + 1) + column, b = a + 1, c = b + SIDE + 1, d = c - 1;
+            bool rising = (row < SIDE / 2) == (column < SIDE / 2);
+            memcpy(face++, rising ? (int[3]){a, b, c} : (int[3]){a, b, d}, sizeof *face);
+            memcpy(face++, rising ? (int[3]){a, c, d} : (int[3]){b, c, d}, sizeof *face);
+        }
+    return mesh;
+}
+
 static bool write_obj(const char* folder, const char* name, const char* words, const ax_mesh* mesh)
 {
     char path[4096];
@@ -238,6 +261,7 @@ int main(int argc, char** argv)
         {"ellipse_dome", "Constant mean curvature 0.2 over an ellipse of 11 by 7", ellipse_dome},
         {"kidney_dome", "Constant mean curvature 0.17 over a kidney, whose rim is concave on one side", kidney_dome},
         {"valley_roof", "A roof with a valley where the mean curvature is negative, faces turned inward", valley_roof},
+        {"square_dome", "A dome over a square of 4 by 4, with sharp corners", square_dome},
         {"saddle", "A saddle: nowhere dome-like, not deployable", saddle},
     };
     if (argc != 2) {
