@@ -32,10 +32,7 @@ void ax_write_number(char* text, size_t size, double value, int decimals)
         power *= 10;
     long long fixed = llround(magnitude * (double)power);
     sign = fixed ? sign : "";
-    if (decimals > 0)
-        snprintf(text, size, "%s%lld.%0*lld", sign, fixed / power, decimals, fixed % power);
-    else
-        snprintf(text, size, "%s%lld", sign, fixed);
+    snprintf(text, size, "%s%.*f", sign, decimals, (double)fixed / (double)power);
 }
 
 int ax_decimals_for(double largest)
