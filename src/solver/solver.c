@@ -597,5 +597,18 @@ double ax_solver_residual(ax_solver* s, int k)
 
 ax_solver_counters ax_solver_count(const ax_solver* s)
 {
-    return s->counters;
+    ax_solver_counters counters = s->counters;
+    counters.bytes = (size_t)s->n * (5 * sizeof(ax_vec4) + 3 * sizeof(double) + 3 * sizeof(int)) +
+                     (size_t)s->row_count * sizeof *s->row;
+    if (s->panels)
+        counters.bytes += ax_panels_bytes(s->panels) / 2 + (size_t)s->n * sizeof(ax_vec4);
+    if (s->incident_start)
+        counters.bytes += (size_t)s->incident_start[s->n] * sizeof *s->incident;
+    for (int k = 0; k < s->group_count; ++k) {
+        const group* g = s->groups + k;
+        size_t each = (size_t)g->points_each * sizeof(int) * AX_W + (size_t)g->type->lanes * sizeof(ax_lane) +
+                      (size_t)g->rows * sizeof(ax_lane3);
+        counters.bytes += (size_t)g->blocks * each + (size_t)g->count * ((size_t)g->points_each + 1) * sizeof(int);
+    }
+    return counters;
 }

@@ -58,6 +58,7 @@ double ax_solver_residual(ax_solver* solver, int group);
 typedef struct ax_solver_counters {
     int analyses, factorisations, iterations;
     double factor_entries;
+    size_t bytes;                         // held by the solver
     size_t bytes_per_solve;               // read by one global solve
     double seconds_local, seconds_global; // since the solver was made
     double seconds_prepare;
