@@ -603,6 +603,23 @@ static void glb_keeps_its_precision_far_from_the_origin(void** state)
     ax_free(design.deployed);
 }
 
+static void png_is_a_picture_of_the_state(void** state)
+{
+    (void)state;
+    static const unsigned char head[24] = {0x89, 'P', 'N',        'G',        '\r', '\n', 0x1a,       '\n',
+                                           0,    0,   0,          13,         'I',  'H',  'D',        'R',
+                                           0,    0,   1600 / 256, 1600 % 256, 0,    0,    1200 / 256, 1200 % 256};
+    size_t size[3];
+    char* bytes[3];
+    for (int s = 0; s < 3; ++s) {
+        bytes[s] = export_design(&sample, "dome.png", states[s], NULL, &size[s]);
+        assert_memory_equal(bytes[s], head, sizeof head);
+    }
+    assert_true(size[0] != size[1] || memcmp(bytes[0], bytes[1], size[0]) != 0);
+    for (int s = 0; s < 3; ++s)
+        free(bytes[s]);
+}
+
 // --- the cut file
 
 typedef struct stroke {
@@ -763,7 +780,7 @@ static void svg_labels_only_panels_that_can_hold_two_millimetres(void** state)
     design.unit = AX_MILLIMETRE;
     design.flat = ax_copy(sample.flat, n, sizeof *sample.flat);
     for (size_t h = 0; h < n; ++h)
-        design.flat[h][0] *= 120, design.flat[h][1] *= 120; // edges of 11 to 20 mm
+        design.flat[h][0] *= 95, design.flat[h][1] *= 95; // edges of 8 to 14 mm
     char* text = export_design(&design, "dome.svg", AX_STATE_DEFAULT, NULL, &size);
     assert_in_range(check_cut_file(&design, 1, text), 10, sample.linkage.triangle_count - 10);
     free(text);
@@ -878,6 +895,7 @@ int main(void)
         cmocka_unit_test(ply_holds_panels_with_scale_and_colour),
         cmocka_unit_test(glb_holds_panels_in_metres_with_y_up),
         cmocka_unit_test(glb_keeps_its_precision_far_from_the_origin),
+        cmocka_unit_test(png_is_a_picture_of_the_state),
         cmocka_unit_test(svg_has_true_size_for_every_unit),
         cmocka_unit_test(svg_labels_only_panels_that_can_hold_two_millimetres),
         cmocka_unit_test(svg_is_the_same_wherever_the_design_lies),

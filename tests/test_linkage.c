@@ -1,6 +1,8 @@
 // What a linkage is called and how it is copied; laying the lattice is tested with the solvers.
 #include "ax/linkage.h"
 
+#include "base/vec.h"
+#include "linkage/lattice.h"
 #include "support/sample.h"
 #include "support/test.h"
 
@@ -38,6 +40,45 @@ static void panels_are_named_by_row_and_place(void** state)
         name_of(cases[k].column, cases[k].row, cases[k].down, text);
         assert_string_equal(text, cases[k].name);
     }
+}
+
+static void a_new_lattice_is_numbered_from_its_own_corner(void** state)
+{
+    (void)state;
+    const double square[4][2] = {{-7, -3}, {5, -3}, {5, 8}, {-7, 8}}, offset[2] = {0.3, 0.7};
+    ax_lattice lattice;
+    assert_int_equal(ax_lattice_lay(&(ax_outline){4, square}, 1, 0.4, offset, false, &lattice, NULL), AX_OK);
+    const ax_linkage* l = &lattice.linkage;
+    assert_true(l->panels[0][1] < 0);
+    ax_lattice_renumber(&lattice);
+    int lowest[2] = {1, 1};
+    for (int t = 0; t < l->triangle_count; ++t) {
+        double centre[2] = {0, 0}, wanted[2];
+        for (int d = 0; d < 2; ++d) {
+            assert_true(l->panels[t][d] >= 0);
+            lowest[d] = l->panels[t][d] < lowest[d] ? l->panels[t][d] : lowest[d];
+            for (int k = 0; k < 3; ++k)
+                centre[d] += lattice.hinges[l->triangles[t][k]][d] / 3;
+        }
+        // the centroid lies a third of the cell's diagonal from its corner, two thirds in a triangle that points down
+        double u = l->panels[t][0] + (1 + l->panels[t][2]) / 3.0, v = l->panels[t][1] + (1 + l->panels[t][2]) / 3.0;
+        for (int d = 0; d < 2; ++d)
+            wanted[d] = lattice.offset[d] + u * (d ? sin(0.4) : cos(0.4)) +
+                        v * (d ? sin(0.4 + AX_PI / 3) : cos(0.4 + AX_PI / 3));
+        assert_near(centre[0], wanted[0], 1e-12);
+        assert_near(centre[1], wanted[1], 1e-12);
+    }
+    assert_int_equal(lowest[0], 0);
+    assert_int_equal(lowest[1], 0);
+    ax_lattice_free(&lattice);
+
+    ax_design design = sample_design();
+    for (int t = 0; t < design.linkage.triangle_count; ++t) {
+        char name[16];
+        ax_panel_name(&design.linkage, t, name);
+        assert_null(strchr(name, '-'));
+    }
+    ax_design_free(&design);
 }
 
 static int by_text(const void* a, const void* b)
@@ -89,6 +130,25 @@ static void a_copy_holds_the_same_and_nothing_in_common(void** state)
     ax_linkage_free(NULL);
 }
 
+static void a_linkage_that_contradicts_itself_is_refused(void** state)
+{
+    (void)state;
+    ax_design design = sample_design();
+    ax_linkage* l = &design.linkage;
+    ax_error error = {0};
+    assert_int_equal(ax_linkage_check(l, &error), AX_OK);
+    l->opening_count -= 1; // the last opening's edges are now on none
+    assert_int_equal(ax_linkage_check(l, &error), AX_BAD_INPUT);
+    assert_non_null(strstr(error.message, "no hole and no opening"));
+    l->opening_count += 1;
+    l->hinge_count += 1; // one that nothing holds
+    l->on_rim = ax_realloc(l->on_rim, (size_t)l->hinge_count, 1);
+    l->on_rim[l->hinge_count - 1] = 1;
+    assert_int_equal(ax_linkage_check(l, &error), AX_BAD_INPUT);
+    assert_non_null(strstr(error.message, "held by 0 triangles"));
+    ax_design_free(&design);
+}
+
 static void units_have_names_and_lengths(void** state)
 {
     (void)state;
@@ -106,7 +166,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(panels_are_named_by_row_and_place),
         cmocka_unit_test(panel_names_are_unique_on_both_sides_of_the_origin),
+        cmocka_unit_test(a_new_lattice_is_numbered_from_its_own_corner),
         cmocka_unit_test(a_copy_holds_the_same_and_nothing_in_common),
+        cmocka_unit_test(a_linkage_that_contradicts_itself_is_refused),
         cmocka_unit_test(units_have_names_and_lengths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

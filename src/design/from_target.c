@@ -294,6 +294,7 @@ static ax_status solve_states(ax_design* design, const ax_design_options* option
     ax_lattice lattice = {0};
     ax_status status = lay(&domain, options, &lattice, error);
     if (status == AX_OK) {
+        ax_lattice_renumber(&lattice);
         bool snap = options->border != AX_BORDER_INSIDE;
         int n = lattice.linkage.hinge_count;
         design->flat = ax_alloc((size_t)n, sizeof *design->flat);

@@ -5,6 +5,7 @@
 #include "base/vec.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -337,6 +338,24 @@ void ax_lattice_free(ax_lattice* lattice)
     ax_linkage_free(&lattice->linkage);
     ax_free(lattice->hinges);
     *lattice = (ax_lattice){0};
+}
+
+void ax_lattice_renumber(ax_lattice* lattice)
+{
+    ax_linkage* linkage = &lattice->linkage;
+    int lowest[2] = {INT_MAX, INT_MAX};
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int d = 0; d < 2; ++d)
+            if (linkage->panels[t][d] < lowest[d])
+                lowest[d] = linkage->panels[t][d];
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int d = 0; d < 2; ++d)
+            linkage->panels[t][d] -= lowest[d];
+    for (int d = 0; d < 2; ++d) { // columns run along the rows, rows at 60 degrees to them
+        double direction = lattice->angle + d * AX_PI / 3;
+        lattice->offset[0] += lattice->spacing * lowest[d] * cos(direction);
+        lattice->offset[1] += lattice->spacing * lowest[d] * sin(direction);
+    }
 }
 
 int (*ax_linkage_mouths(const ax_linkage* linkage, int* count))[3]

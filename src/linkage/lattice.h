@@ -26,6 +26,10 @@ typedef struct ax_outline {
 ax_status ax_lattice_lay(const ax_outline* outline, double spacing, double angle, const double offset[2], bool inside,
                          ax_lattice* out, ax_error* error);
 
+// Moves the origin to the lowest column and row in use, so that people count panels from there; the hinges stay. For new
+// lattices only: panels are known by their numbers.
+void ax_lattice_renumber(ax_lattice* lattice);
+
 // Corners of the flat holes: triples (previous, hinge, next) of every hole and of the inner hinges of every opening. Counted in
 // *count; owned by the caller.
 int (*ax_linkage_mouths(const ax_linkage* linkage, int* count))[3];
