@@ -68,9 +68,11 @@ static json_t* numbers(const float* values)
     return json_pack("[f, f, f]", (double)values[0], (double)values[1], (double)values[2]);
 }
 
-static json_t* make_scene(const char* remark, int corners, const double centre[3], const float bounds[2][3])
+static json_t* make_scene(ax_state state, int corners, const double centre[3], const float bounds[2][3])
 {
     int bytes = corners * (int)sizeof(corner);
+    char generator[40]; // the unit is always the metre, so the usual remark would mislead
+    snprintf(generator, sizeof generator, "Auxshell %s", ax_version());
     json_t* accessors = json_pack(
         "[{s:i, s:i, s:i, s:i, s:s, s:o, s:o}, {s:i, s:i, s:i, s:i, s:s}, {s:i, s:i, s:i, s:i, s:s, s:b}]",
         "bufferView", 0, "byteOffset", (int)offsetof(corner, place), "componentType", FLOAT, "count", corners, "type",
@@ -82,11 +84,11 @@ static json_t* make_scene(const char* remark, int corners, const double centre[3
     json_t* material = json_pack("{s:b, s:{s:f, s:f}}", "doubleSided", 1, "pbrMetallicRoughness", "metallicFactor", 0.0,
                                  "roughnessFactor", 0.8);
     double half = sqrt(0.5);
-    json_t* node = json_pack("{s:i, s:s, s:[f, f, f, f], s:[f, f, f]}", "mesh", 0, "name", "linkage", "rotation", -half,
-                             0.0, 0.0, half, "translation", centre[0], centre[2], -centre[1]);
+    json_t* node = json_pack("{s:i, s:s, s:[f, f, f, f], s:[f, f, f]}", "mesh", 0, "name", ax_state_name(state),
+                             "rotation", -half, 0.0, 0.0, half, "translation", centre[0], centre[2], -centre[1]);
     return json_pack("{s:{s:s, s:s}, s:i, s:[{s:[i]}], s:[o], s:[{s:[{s:{s:i, s:i, s:i}, s:i, s:i}]}], s:[o], s:o, "
                      "s:[{s:i, s:i, s:i, s:i}], s:[{s:i}]}",
-                     "asset", "version", "2.0", "generator", remark,                                     //
+                     "asset", "version", "2.0", "generator", generator,                                  //
                      "scene", 0, "scenes", "nodes", 0,                                                   //
                      "nodes", node,                                                                      //
                      "meshes", "primitives", "attributes", "POSITION", 0, "NORMAL", 1, "COLOR_0", 2,     //
@@ -116,9 +118,7 @@ static ax_status write_glb(const ax_design* design, ax_state state, const ax_exp
     double centre[3];
     float bounds[2][3];
     corner* corners = make_corners(design, state, centre, bounds);
-    char remark[80];
-    ax_export_remark(design, state, remark);
-    json_t* scene = make_scene(remark, count, centre, (const float(*)[3])bounds);
+    json_t* scene = make_scene(state, count, centre, (const float(*)[3])bounds);
     if (!scene) { // infinite in single precision
         ax_free(corners);
         fclose(out);
