@@ -186,7 +186,9 @@ void ax_panels_add(ax_scene* scene, const ax_linkage* linkage, const double (*pl
                    const ax_panels_look* look)
 {
     bool forces = look->palette.kind == AX_PALETTE_FORCE;
-    bool solid = look->edge_pixels >= 8, bevelled = look->edge_pixels >= 20, bars = forces && solid;
+    bool solid = look->edge_pixels >= 4, jointed = look->edge_pixels >= 8, bevelled = look->edge_pixels >= 20;
+    bool bars = forces && jointed;
+    double margin = jointed ? inset * edge : 0, corner = jointed ? tip * edge : 0;
     scene->two_sided = !solid;
     double(*axis)[3] = ax_calloc((size_t)linkage->hinge_count, sizeof *axis);
     for (int t = 0; t < linkage->triangle_count; ++t) {
@@ -215,14 +217,14 @@ void ax_panels_add(ax_scene* scene, const ax_linkage* linkage, const double (*pl
             continue;
         }
         double half = thickness * edge / 2, round = bevelled ? bevel * edge : 0;
-        polygon body = outline(&p, inset * edge, tip * edge), face = body;
+        polygon body = outline(&p, margin, corner), face = body;
         int side = ax_scene_add_paint(scene, flank, side_gain), under = ax_scene_add_paint(scene, flank, under_gain);
         int bottom = add_corners(scene, &p, &body, -half), shoulder = add_corners(scene, &p, &body, half - round);
         int top = shoulder;
         add_band(scene, bottom, shoulder, body.count, side);
         add_fan(scene, bottom, body.count, false, under);
         if (bevelled) {
-            face = outline(&p, inset * edge + round, tip * edge + round);
+            face = outline(&p, margin + round, corner + round);
             top = add_corners(scene, &p, &face, half);
             add_band(scene, shoulder, top, face.count, ax_scene_add_paint(scene, flank, 1));
         }
@@ -235,8 +237,8 @@ void ax_panels_add(ax_scene* scene, const ax_linkage* linkage, const double (*pl
         } else
             add_fan(scene, top, face.count, true, paint);
     }
-    int paint = solid ? ax_scene_add_paint(scene, joint_rgb, 1) : -1;
-    for (int h = 0; solid && h < linkage->hinge_count; ++h) {
+    int paint = jointed ? ax_scene_add_paint(scene, joint_rgb, 1) : -1;
+    for (int h = 0; jointed && h < linkage->hinge_count; ++h) {
         double length = ax_norm3(axis[h]);
         for (int c = 0; c < 3; ++c)
             axis[h][c] = length > 0 ? axis[h][c] / length : c == 2;

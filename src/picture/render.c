@@ -36,6 +36,12 @@ typedef struct work {
     double places[AX_RASTER_SAMPLES][2]; // of the samples within a pixel
 } work;
 
+// hypot guards against overflow, at a price per pixel.
+static double length2(double x, double y)
+{
+    return sqrt(x * x + y * y);
+}
+
 static void prepare_outlines(work* w)
 {
     const ax_scene* scene = w->scene;
@@ -57,7 +63,7 @@ static void prepare_outlines(work* w)
         double turn = area < 0 ? -1 : 1; // seen from its back
         for (int k = 0; k < paint->outline_count; ++k) {
             const ax_raster_vertex *a = &corners[k], *b = &corners[(k + 1) % paint->outline_count];
-            double dx = b->x - a->x, dy = b->y - a->y, length = hypot(dx, dy) * turn;
+            double dx = b->x - a->x, dy = b->y - a->y, length = length2(dx, dy) * turn;
             line* edge = &w->lines[w->first_line[p] + k];
             *edge = (line){0, 0, INFINITY}; // two points in one place: no edge
             if (fabs(length) > 1e-6)
@@ -97,27 +103,28 @@ static double grid_line(double at, double step, double width)
 // sRGB of the ground seen at a pixel.
 static void backdrop(const work* w, double x, double y, double rgb[3])
 {
-    double reach = 0.62 * hypot(w->width, w->height);
-    double t = fmin(1, hypot(x - 0.5 * w->width, y - 0.38 * w->height) / reach);
+    double reach = 0.62 * length2(w->width, w->height);
+    double t = fmin(1, length2(x - 0.5 * w->width, y - 0.38 * w->height) / reach);
     for (int c = 0; c < 3; ++c)
         rgb[c] = bright[c] + (corner[c] - bright[c]) * t * t * (3 - 2 * t);
-    double origin[3], ray[3], place[2][3];
-    for (int k = 0; k < 2; ++k) { // this pixel and its diagonal neighbour, for the footprint
-        ax_view_ray(w->view, x + k, y + k, origin, ray);
+    double origin[3], ray[3], place[3][2]; // on the ground, at this pixel and its neighbours to the right and below
+    for (int k = 0; k < 3; ++k) {
+        ax_view_ray(w->view, x + (k == 1), y + (k == 2), origin, ray);
         if (ray[2] > -1e-3)
             return;
         double far = (w->light->ground - origin[2]) / ray[2];
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 2; ++c)
             place[k][c] = origin[c] + far * ray[c];
     }
     const ax_render_setup* setup = w->setup;
-    double radius = hypot(place[0][0], place[0][1]);
+    double radius = length2(place[0][0], place[0][1]);
     double fade = setup->grid > 0 ? ax_clamp((setup->grid_fade - radius) / (0.6 * setup->grid_fade), 0, 1) : 0;
     for (int major = 0; major < 2 && fade > 0; ++major) {
         double distance = setup->grid * (major ? 5 : 1), cover = 0;
-        for (int c = 0; c < 2; ++c)
-            cover = fmax(cover, grid_line(place[0][c] / distance,
-                                          fmax(fabs(place[1][c] - place[0][c]) / distance, 1e-9), setup->pixel));
+        for (int c = 0; c < 2; ++c) {
+            double step = length2(place[1][c] - place[0][c], place[2][c] - place[0][c]);
+            cover = fmax(cover, grid_line(place[0][c] / distance, fmax(step / distance, 1e-9), setup->pixel));
+        }
         cover *= (major ? 0.6 : 0.5) * fade;
         for (int c = 0; c < 3; ++c)
             rgb[c] += ((major ? grid_major : grid_minor)[c] - rgb[c]) * cover;
@@ -149,7 +156,7 @@ static double soften_step(const work* w, const int corners[3], double value, dou
     double bx = b->x - a->x, by = b->y - a->y, cx = c->x - a->x, cy = c->y - a->y, area = bx * cy - by * cx;
     double rise_b = (double)w->scene->values[corners[1]] - w->scene->values[corners[0]];
     double rise_c = (double)w->scene->values[corners[2]] - w->scene->values[corners[0]];
-    double slope = hypot(rise_b * cy - rise_c * by, rise_c * bx - rise_b * cx) / fmax(fabs(area), 1e-12);
+    double slope = length2(rise_b * cy - rise_c * by, rise_c * bx - rise_b * cx) / fmax(fabs(area), 1e-12);
     double positive = slope > 0 ? ax_clamp(0.5 + value / slope, 0, 1) : value > 0;
     if (positive > 0 && positive < 1) {
         double least = w->palette_range[1] / SHADES, above[3], below[3];
