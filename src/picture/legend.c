@@ -12,27 +12,31 @@ static void set_colour(cairo_t* cr, unsigned rgb, double alpha)
     cairo_set_source_rgba(cr, (rgb >> 16 & 255) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0, alpha);
 }
 
+// Digits are placed by hand, since printf writes the decimal point of the user's locale.
 void ax_write_number(char* text, size_t size, double value, int decimals)
 {
-    const char* sign = value < 0 ? "\u2212" : "";
     double magnitude = fabs(value);
-    if (magnitude > 0 && (magnitude >= 1e6 || decimals > 5)) {
-        int exponent = (int)floor(log10(magnitude));
-        int tenths = (int)lrint(magnitude / pow(10, exponent - 1));
-        if (tenths == 100)
-            tenths = 10, ++exponent;
-        if (tenths % 10)
-            snprintf(text, size, "%s%d.%de%d", sign, tenths / 10, tenths % 10, exponent);
-        else
-            snprintf(text, size, "%s%de%d", sign, tenths / 10, exponent);
-        return;
+    int exponent = 0, places = decimals;
+    if (magnitude > 0 && (magnitude >= 1e6 || decimals > 5)) { // one or two digits and a power of ten
+        exponent = (int)floor(log10(magnitude));
+        long tenths = lrint(magnitude / pow(10, exponent - 1));
+        exponent += tenths == 100;
+        magnitude = (double)(tenths == 100 ? 10 : tenths) / 10;
+        places = tenths % 10 ? 1 : 0;
     }
-    long long power = 1;
-    for (int k = 0; k < decimals; ++k)
-        power *= 10;
-    long long fixed = llround(magnitude * (double)power);
-    sign = fixed ? sign : "";
-    snprintf(text, size, "%s%.*f", sign, decimals, (double)fixed / (double)power);
+    long long fixed = llround(magnitude * pow(10, places));
+    const char* sign = value < 0 && fixed ? "\u2212" : "";
+    char digits[32], *first = digits + sizeof digits - 1;
+    *first = 0;
+    for (int k = 0; k <= places || fixed > 0; ++k, fixed /= 10) {
+        if (k > 0 && k == places)
+            *--first = '.';
+        *--first = (char)('0' + fixed % 10);
+    }
+    if (exponent)
+        snprintf(text, size, "%s%se%d", sign, first, exponent);
+    else
+        snprintf(text, size, "%s%s", sign, first);
 }
 
 int ax_decimals_for(double largest)

@@ -16,8 +16,9 @@ typedef struct ax_legend {
     double bins[AX_LEGEND_BINS]; // how often each fiftieth of the map occurs, any unit
 } ax_legend;
 
-// Counts a value into the bins and the realised range, which `ax_legend_make` leaves empty.
+// A legend without words and values.
 ax_legend ax_legend_make(const char* title, const ax_palette* palette);
+// Counts a value into the bins and the realised range; NaN is passed over.
 void ax_legend_count(ax_legend* legend, double value, double weight);
 
 // Sizes are in units of `unit` pixels. The card's place is known before it is drawn, so that the view can keep clear of it.

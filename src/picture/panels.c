@@ -135,17 +135,16 @@ static void add_bars(ax_scene* scene, const panel* p, const polygon* top, double
     polygon middle = *top;
     for (int k = 0; k < 3; ++k) {
         int next = (k + 1) % 3, previous = (k + 2) % 3;
-        double within[3] = {-width[k], -width[k], -width[k]}, beyond[3] = {width[k], width[k], width[k]};
-        within[k] += 1; // outside the bar; coordinates sum to 1
-        beyond[k] -= 1;
-        middle = cut(&middle, within);
-        polygon bar = cut(top, beyond);
-        double mitre[3] = {0};
-        mitre[next] = width[k], mitre[k] = -width[next];
-        bar = cut(&bar, mitre);
-        memset(mitre, 0, sizeof mitre);
-        mitre[previous] = width[k], mitre[k] = -width[previous];
-        bar = cut(&bar, mitre);
+        double beside[3] = {-width[k], -width[k], -width[k]}, within[3] = {width[k], width[k], width[k]};
+        beside[k] += 1, within[k] -= 1; // coordinates sum to 1: these compare coordinate k with the width
+        middle = cut(&middle, beside);
+        polygon bar = cut(top, within);
+        for (int end = 0; end < 2; ++end) { // mitred with its neighbours
+            double mitre[3] = {0};
+            int other = end ? previous : next;
+            mitre[other] = width[k], mitre[k] = -width[other];
+            bar = cut(&bar, mitre);
+        }
         double rgb[3];
         ax_palette_colour(palette, force[k], rgb);
         int paint = ax_scene_add_paint(scene, rgb, 1);
@@ -182,63 +181,81 @@ static void add_joint(ax_scene* scene, const double place[3], const double axis[
     add_fan(scene, ring[1], JOINT_SIDES, true, paint);
 }
 
+// How much of a panel is made, from its size in the picture.
+typedef struct detail {
+    bool outlined, solid, jointed, bevelled, bars;
+    double edge; // mean of all panels
+} detail;
+
+// Adds a panel's top, whose corners are those from `first` on, and the outline around it.
+static void add_top(ax_scene* scene, const panel* p, const polygon* face, int first, double height, const double rgb[3],
+                    bool hatched, const detail* d, const double force[3], const ax_palette* palette)
+{
+    int paint = ax_scene_add_paint(scene, rgb, 1);
+    scene->paints[paint].hatched = hatched;
+    if (d->bars)
+        add_bars(scene, p, face, height, d->edge, force, palette, paint);
+    else
+        add_fan(scene, first, face->count, true, paint);
+    for (int k = paint; d->outlined && k < scene->paint_count; ++k)
+        scene->paints[k].outline_first = first, scene->paints[k].outline_count = face->count;
+}
+
+static void add_panel(ax_scene* scene, const panel* p, const double force[3], double scale, const detail* d,
+                      const ax_palette* palette)
+{
+    static const polygon whole = {3, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    double value = palette->kind == AX_PALETTE_FORCE ? strongest(force) : scale, rgb[3], flank[3];
+    ax_palette_colour(palette, value, rgb);
+    for (int c = 0; c < 3; ++c) { // under bars the panel itself is paler than they are
+        flank[c] = d->bars ? 0.7 * rgb[c] + 0.3 * 0.93 : rgb[c];
+        rgb[c] = d->bars ? 0.42 * rgb[c] + 0.58 * 0.93 : rgb[c];
+    }
+    bool hatched = !d->bars && ax_palette_hatched(palette, value);
+    if (!d->solid) {
+        add_top(scene, p, &whole, add_corners(scene, p, &whole, 0), 0, rgb, hatched, d, force, palette);
+        return;
+    }
+    double half = thickness * d->edge / 2, round = d->bevelled ? bevel * d->edge : 0;
+    double margin = d->jointed ? inset * d->edge : 0, corner = d->jointed ? tip * d->edge : 0;
+    polygon body = outline(p, margin, corner), face = outline(p, margin + round, corner + round);
+    int bottom = add_corners(scene, p, &body, -half), shoulder = add_corners(scene, p, &body, half - round);
+    add_fan(scene, bottom, body.count, false, ax_scene_add_paint(scene, flank, under_gain));
+    add_band(scene, bottom, shoulder, body.count, ax_scene_add_paint(scene, flank, side_gain));
+    int top = shoulder;
+    if (d->bevelled) {
+        top = add_corners(scene, p, &face, half);
+        add_band(scene, shoulder, top, face.count, ax_scene_add_paint(scene, flank, 1));
+    }
+    add_top(scene, p, &face, top, half, rgb, hatched, d, force, palette);
+}
+
 void ax_panels_add(ax_scene* scene, const ax_linkage* linkage, const double (*places)[3], double edge,
                    const ax_panels_look* look)
 {
     bool forces = look->palette.kind == AX_PALETTE_FORCE;
-    bool solid = look->edge_pixels >= 4, jointed = look->edge_pixels >= 8, bevelled = look->edge_pixels >= 20;
-    bool bars = forces && jointed;
-    double margin = jointed ? inset * edge : 0, corner = jointed ? tip * edge : 0;
-    scene->two_sided = !solid;
+    detail d = {
+        .outlined = look->edge_pixels >= 2,
+        .solid = look->edge_pixels >= 4,
+        .jointed = look->edge_pixels >= 8,
+        .bars = forces && look->edge_pixels >= 8,
+        .bevelled = look->edge_pixels >= 20,
+        .edge = edge,
+    };
+    scene->two_sided = !d.solid;
     double(*axis)[3] = ax_calloc((size_t)linkage->hinge_count, sizeof *axis);
     for (int t = 0; t < linkage->triangle_count; ++t) {
         panel p = make_panel(linkage->triangles[t], places, look->front);
-        double force[3] = {0}, value, rgb[3];
+        double force[3] = {0};
         if (forces)
             forces_of(look, t, force);
-        value = forces ? strongest(force) : look->scale[t];
-        ax_palette_colour(&look->palette, value, rgb);
-        bool hatched = !bars && ax_palette_hatched(&look->palette, value);
-        double flank[3];
-        for (int c = 0; c < 3; ++c) { // with bars, the panel itself is paler than they are
-            flank[c] = bars ? 0.7 * rgb[c] + 0.3 * 0.93 : rgb[c];
-            rgb[c] = bars ? 0.42 * rgb[c] + 0.58 * 0.93 : rgb[c];
-        }
-        int paint = ax_scene_add_paint(scene, rgb, 1);
-        scene->paints[paint].hatched = hatched;
+        add_panel(scene, &p, force, forces ? 0 : look->scale[t], &d, &look->palette);
         for (int k = 0; k < 3; ++k)
             for (int c = 0; c < 3; ++c)
                 axis[linkage->triangles[t][k]][c] += p.normal[c];
-        if (!solid) {
-            static const polygon whole = {3, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-            int first = add_corners(scene, &p, &whole, 0);
-            add_fan(scene, first, 3, true, paint);
-            scene->paints[paint].outline_first = first, scene->paints[paint].outline_count = 3;
-            continue;
-        }
-        double half = thickness * edge / 2, round = bevelled ? bevel * edge : 0;
-        polygon body = outline(&p, margin, corner), face = body;
-        int side = ax_scene_add_paint(scene, flank, side_gain), under = ax_scene_add_paint(scene, flank, under_gain);
-        int bottom = add_corners(scene, &p, &body, -half), shoulder = add_corners(scene, &p, &body, half - round);
-        int top = shoulder;
-        add_band(scene, bottom, shoulder, body.count, side);
-        add_fan(scene, bottom, body.count, false, under);
-        if (bevelled) {
-            face = outline(&p, margin + round, corner + round);
-            top = add_corners(scene, &p, &face, half);
-            add_band(scene, shoulder, top, face.count, ax_scene_add_paint(scene, flank, 1));
-        }
-        scene->paints[paint].outline_first = top, scene->paints[paint].outline_count = face.count;
-        if (bars) {
-            int before = scene->paint_count;
-            add_bars(scene, &p, &face, half, edge, force, &look->palette, paint);
-            for (int k = before; k < scene->paint_count; ++k)
-                scene->paints[k].outline_first = top, scene->paints[k].outline_count = face.count;
-        } else
-            add_fan(scene, top, face.count, true, paint);
     }
-    int paint = jointed ? ax_scene_add_paint(scene, joint_rgb, 1) : -1;
-    for (int h = 0; jointed && h < linkage->hinge_count; ++h) {
+    int paint = d.jointed ? ax_scene_add_paint(scene, joint_rgb, 1) : 0;
+    for (int h = 0; d.jointed && h < linkage->hinge_count; ++h) {
         double length = ax_norm3(axis[h]);
         for (int c = 0; c < 3; ++c)
             axis[h][c] = length > 0 ? axis[h][c] / length : c == 2;

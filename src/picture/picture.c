@@ -139,39 +139,24 @@ static void extents(int count, const double (*places)[3], double size[3])
     }
 }
 
-// Value that a share of the values does not exceed. The order among equals does not matter.
 static int compare_doubles(const void* a, const void* b)
 {
     double x = *(const double*)a, y = *(const double*)b;
     return (x > y) - (x < y);
 }
 
-static double quantile(double* values, int count, double share)
+// Symmetric range for signed values: rounded up from the 99th percentile of their magnitudes.
+static double signed_limit(const double* values, int count)
 {
-    if (count == 0)
-        return 0;
-    qsort(values, (size_t)count, sizeof *values, compare_doubles);
-    return values[(int)(share * (count - 1))];
-}
-
-// Symmetric range for signed values: rounded up from their 99th percentile, by magnitude. `values` is used up.
-static double signed_limit(double* values, int count)
-{
+    double* sizes = AX_NEW(double, count);
     int kept = 0;
     for (int i = 0; i < count; ++i)
         if (isfinite(values[i]))
-            values[kept++] = fabs(values[i]);
-    double high = quantile(values, kept, 0.99);
+            sizes[kept++] = fabs(values[i]);
+    qsort(sizes, (size_t)kept, sizeof *sizes, compare_doubles);
+    double high = kept ? sizes[(int)(0.99 * (kept - 1))] : 0;
+    ax_free(sizes);
     return ax_palette_limit(high > 1e-300 ? high : 1);
-}
-
-static double force_limit(const ax_design* design)
-{
-    int count = 3 * design->linkage.triangle_count;
-    double* values = ax_copy(design->edge_forces, (size_t)count, sizeof *values);
-    double limit = signed_limit(values, count);
-    ax_free(values);
-    return limit;
 }
 
 static ax_legend design_legend(const ax_design* design, const ax_palette* palette)
@@ -349,7 +334,8 @@ ax_status ax_picture_design(const ax_design* design, ax_state state, int width, 
     bool forces = state == AX_STATE_SIMULATED && design->edge_forces;
     ax_panels_look look = {
         .front = c.stance.front,
-        .palette = {forces ? AX_PALETTE_FORCE : AX_PALETTE_SCALE, forces ? force_limit(design) : 1},
+        .palette = {forces ? AX_PALETTE_FORCE : AX_PALETTE_SCALE,
+                    forces ? signed_limit(*design->edge_forces, 3 * linkage->triangle_count) : 1},
         .scale = design->scale,
         .edge_forces = (const double(*)[3])design->edge_forces,
     };
@@ -370,7 +356,7 @@ ax_status ax_picture_design(const ax_design* design, ax_state state, int width, 
         c.light.shadow_size = (int)ax_clamp(fmax(width, height), 512, 4096);
     }
     c.render.outlines =
-        (forces ? 0.2 : 0.45) * fading(2, 6, look.edge_pixels) * (0.35 + 0.65 * fading(6, 14, look.edge_pixels));
+        (forces ? 0.2 : 0.45) * fading(2, 6, look.edge_pixels) * (0.25 + 0.75 * fading(8, 32, look.edge_pixels));
     status = paint(&c, &scene, path, error);
     ax_scene_free(&scene);
     return status;
@@ -390,16 +376,12 @@ ax_status ax_picture_screen(const ax_mesh* mesh, const ax_screen* screen, ax_fie
                        "The surface was not flattened, so it has no scale factors to show. Choose the curvature.");
     assert(screen->vertex_count == mesh->vertex_count);
     int vertices = mesh->vertex_count;
-    double normal[3], size[3], one = 1;
+    double normal[3], size[3];
     sum_of_normals(mesh->face_count, (const int(*)[3])mesh->faces, (const double(*)[3])mesh->positions, normal);
     c.stance = take_stance(normal);
 
-    ax_palette palette = {curvature ? AX_PALETTE_CURVATURE : AX_PALETTE_SCALE, one};
-    if (curvature) {
-        double* magnitudes = ax_copy(values, (size_t)vertices, sizeof *magnitudes);
-        palette.limit = signed_limit(magnitudes, vertices);
-        ax_free(magnitudes);
-    }
+    ax_palette palette = {curvature ? AX_PALETTE_CURVATURE : AX_PALETTE_SCALE,
+                          curvature ? signed_limit(values, vertices) : 1};
     c.legend = ax_legend_make(curvature ? "Mean curvature H" : "Scale factor \u03bb", &palette);
     if (curvature)
         c.legend.words[0] = "Dips inward", c.legend.words[1] = "Bulges outward";

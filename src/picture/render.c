@@ -143,9 +143,10 @@ static double hatch(const work* w, double x, double y)
 static void look_up(const work* w, double value, double rgb[3])
 {
     double span = w->palette_range[1] - w->palette_range[0];
-    int shade_index = (int)ax_clamp(floor((value - w->palette_range[0]) / span * SHADES), 0, SHADES - 1);
+    double place = (value - w->palette_range[0]) / span * SHADES;
+    const float* found = w->shades[place > 0 ? (int)fmin(place, SHADES - 1) : 0];
     for (int c = 0; c < 3; ++c)
-        rgb[c] = w->shades[shade_index][c];
+        rgb[c] = found[c];
 }
 
 // Blends the colours on both sides of 0, where the palette has its step, over the pixel that the line passes through. Returns the

@@ -2,6 +2,8 @@
 
 #include "base/vec.h"
 
+#include <assert.h>
+
 void ax_scene_free(ax_scene* scene)
 {
     ax_free(scene->places);
@@ -69,7 +71,8 @@ int ax_scene_add_paint(ax_scene* scene, const double rgb[3], double gain)
 ax_scene ax_scene_of_surface(const ax_mesh* mesh, const double* values, const ax_palette* palette, int front)
 {
     ax_scene scene = {.palette = *palette, .two_sided = true};
-    ax_scene_find_frame(mesh->vertex_count, (const double(*)[3])mesh->positions, &scene.frame);
+    bool finite = ax_scene_find_frame(mesh->vertex_count, (const double(*)[3])mesh->positions, &scene.frame);
+    assert(finite), (void)finite;
     double(*normals)[3] = ax_calloc((size_t)mesh->vertex_count, sizeof *normals);
     for (int v = 0; v < mesh->vertex_count; ++v) {
         double place[3];
