@@ -162,19 +162,19 @@ static void overlaps_and_flips_are_found_where_they_are_made(void** state)
     (void)state;
     ax_lattice lattice = lay(0, 0.1, 0, false);
     const ax_linkage* linkage = &lattice.linkage;
-    int first[2], n = linkage->hinge_count;
+    int first[1][2] = {{-1, -1}}, n = linkage->hinge_count;
     double(*flat)[2] = ax_copy(lattice.hinges, (size_t)n, sizeof *flat);
-    assert_int_equal(ax_measure_overlaps(linkage, (const double(*)[2])flat, 1e-9, first), 0);
-    assert_int_equal(first[0], -1);
+    assert_int_equal(ax_measure_overlaps(linkage, (const double(*)[2])flat, 1e-9, 1, first), 0);
+    assert_int_equal(first[0][0], -1);
     // push a hinge across its hole and through the far side: its panels run into the one behind
     const int* loop = linkage->hole_hinges + linkage->hole_start[linkage->hole_count / 2];
     for (int d = 0; d < 2; ++d) {
         double across = (flat[loop[2]][d] + flat[loop[3]][d]) / 2 - flat[loop[0]][d];
         flat[loop[0]][d] += 1.2 * across;
     }
-    assert_true(ax_measure_overlaps(linkage, (const double(*)[2])flat, 1e-9, first) > 0);
-    assert_true(first[0] >= 0 && first[1] > first[0]);
-    assert_true(ax_measure_overlaps(linkage, (const double(*)[2])flat, 0.05, first) == 0);
+    assert_true(ax_measure_overlaps(linkage, (const double(*)[2])flat, 1e-9, 1, first) > 0);
+    assert_true(first[0][0] >= 0 && first[0][1] > first[0][0]);
+    assert_true(ax_measure_overlaps(linkage, (const double(*)[2])flat, 0.05, 1, first) == 0);
     for (int h = 0; h < n; ++h)
         flat[h][0] = -lattice.hinges[h][0], flat[h][1] = lattice.hinges[h][1];
     assert_int_equal(ax_measure_flipped(linkage, (const double(*)[2])flat), linkage->triangle_count);

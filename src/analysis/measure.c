@@ -111,11 +111,10 @@ static double overlap_depth(const double a[3][2], const double b[3][2])
     return depth;
 }
 
-int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], double depth, int first[2])
+int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], double depth, int most, int (*pairs)[2])
 {
-    int count = linkage->triangle_count, pairs = 0;
+    int count = linkage->triangle_count, found = 0;
     double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY}, cell = 0;
-    first[0] = first[1] = -1;
     for (int t = 0; t < count; ++t)
         for (int k = 0; k < 3; ++k) {
             const double *a = flat[linkage->triangles[t][k]], *b = flat[linkage->triangles[t][(k + 1) % 3]];
@@ -156,15 +155,15 @@ int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], doub
                         continue;
                     for (int corner = 0; corner < 3; ++corner)
                         memcpy(b[corner], flat[linkage->triangles[other][corner]], sizeof b[corner]);
-                    if (overlap_depth((const double(*)[2])a, (const double(*)[2])b) > depth && pairs++ == 0)
-                        first[0] = t, first[1] = other;
+                    if (overlap_depth((const double(*)[2])a, (const double(*)[2])b) > depth && found++ < most)
+                        pairs[found - 1][0] = t, pairs[found - 1][1] = other;
                 }
     }
     ax_free(start);
     ax_free(fill);
     ax_free(place);
     ax_free(sorted);
-    return pairs;
+    return found;
 }
 
 int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2])

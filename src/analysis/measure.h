@@ -20,8 +20,9 @@ typedef struct ax_mouth_measure {
 } ax_mouth_measure;
 ax_mouth_measure ax_measure_mouths(const ax_linkage* linkage, const double (*flat)[2]);
 
-// Pairs of flat triangles whose interiors overlap by more than `depth` (separating axes over a grid), and the first such pair.
-int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], double depth, int first[2]);
+// Number of pairs of flat triangles whose interiors overlap by more than `depth` (separating axes over a grid); the first `most` of
+// them go to `pairs`.
+int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], double depth, int most, int (*pairs)[2]);
 int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2]);
 
 // Realised scale factor per triangle: twice its mean edge over the lattice spacing that its neighbours' centres show in the

@@ -5,6 +5,7 @@
 //   fairness     (q - q0)_i - (q - q0)_j                every edge
 //   stay         p - p0, q - q0
 //   mouth        min(beta - beta_aim, 0)                one-sided, chosen again at each step
+//   apart        max(depth + margin, 0)                 pairs of panels named by the caller, depth by separating axes
 // subject to  c_e = (|p_i - p_j|^2 - |q_i - q_j|^2) / 2 = 0  for every edge.
 //
 // Each step solves the linearised KKT system by the condensed matrix S'S + mu C'C and Uzawa refinement of the multipliers:
@@ -28,7 +29,7 @@
 enum { UNKNOWNS = 5, STEPS = 40, ANCHORED_STEPS = 4 };
 static const double weight_inner = 10, weight_border = 3, weight_released = 0.02, weight_surface = 3, weight_rim = 10,
                     weight_fair = 0.05, weight_stay = 0.003, weight_mouth = 10, mouth_margin = 1.05, mouth_share = 0.7,
-                    mouth_comfort = 15 * AX_PI / 180;
+                    mouth_comfort = 15 * AX_PI / 180, apart_margin = 0.02;
 
 typedef double state[UNKNOWNS]; // p0, p1, q0, q1, q2 of one hinge
 
@@ -63,13 +64,18 @@ static void edge_ends(const solver* s, int e, int* i, int* j)
 
 static void build_pattern(solver* s)
 {
-    int most = s->edges + s->mouths, count = 0;
+    int most = s->edges + s->mouths + 9 * s->problem->apart_count, count = 0;
     int(*pairs)[2] = ax_alloc((size_t)most, sizeof *pairs);
     for (int e = 0; e < s->edges; ++e, ++count)
         edge_ends(s, e, &pairs[count][0], &pairs[count][1]);
     for (int m = 0; m < s->mouths; ++m)
         if (s->in_pattern[m])
             pairs[count][0] = s->mouth[m][0], pairs[count][1] = s->mouth[m][2], ++count;
+    for (int pair = 0; pair < s->problem->apart_count; ++pair)
+        for (int k = 0; k < 9; ++k, ++count) {
+            pairs[count][0] = s->linkage->triangles[s->problem->apart[pair][0]][k / 3];
+            pairs[count][1] = s->linkage->triangles[s->problem->apart[pair][1]][k % 3];
+        }
     if (s->factor) {
         ax_blocks_free(&s->matrix);
         ax_cholesky_free(s->factor);
@@ -110,6 +116,27 @@ static double worst_congruence(const solver* s, const state* x)
 static double mouth_angle(const solver* s, const state* x, int m)
 {
     return ax_mouth_angle(x[s->mouth[m][0]], x[s->mouth[m][1]], x[s->mouth[m][2]]);
+}
+
+// Depth by which a pair of panels overlaps along its best separating edge (negative: the gap there), and the hinges that
+// decide it: the edge from end[0] to end[1] of one panel, and the deepest corner end[2] of the other.
+static double apart_depth(const solver* s, const state* x, int pair, int end[3])
+{
+    double least = INFINITY;
+    for (int side = 0; side < 6; ++side) {
+        const int* of = s->linkage->triangles[s->problem->apart[pair][side / 3]];
+        const int* other = s->linkage->triangles[s->problem->apart[pair][1 - side / 3]];
+        int a = of[side % 3], b = of[(side + 1) % 3], deepest = -1;
+        double depth = -INFINITY, length = ax_distance2(x[a], x[b]);
+        for (int k = 0; k < 3; ++k) {
+            double d = ax_orient2(x[a], x[b], x[other[k]]) / length;
+            if (d > depth)
+                depth = d, deepest = other[k];
+        }
+        if (depth < least)
+            least = depth, end[0] = a, end[1] = b, end[2] = deepest;
+    }
+    return least;
 }
 
 // Equilateral rows of a triangle: residuals r[3] and gradients with respect to the q of its corners.
@@ -194,10 +221,15 @@ static double objective(const solver* s, const state* x)
             fair += d * d;
         }
     }
-    double mouths = 0;
+    double mouths = 0; // and panels held apart
     for (int m = 0; m < s->mouths; ++m) {
         double short_of = fmin(mouth_angle(s, x, m) - s->mouth_aim, 0);
         mouths += short_of * short_of;
+    }
+    for (int pair = 0; pair < s->problem->apart_count; ++pair) {
+        int end[3];
+        double into = fmax(apart_depth(s, x, pair, end) + apart_margin, 0);
+        mouths += into * into;
     }
     return (sum + contact + weight_stay * weight_stay * stay + weight_fair * weight_fair * fair +
             weight_mouth * weight_mouth * mouths) /
@@ -243,6 +275,18 @@ static void constraint_gradient(const state* x, int i, int j, double g[UNKNOWNS]
 {
     for (int k = 0; k < UNKNOWNS; ++k)
         g[k] = (k < 2 ? 1 : -1) * (x[i][k] - x[j][k]);
+}
+
+// Adds one row of weight weight_mouth on three hinges: its residual r and gradients.
+static void add_row(solver* s, const int hinge[3], double gradient[3][UNKNOWNS], double r)
+{
+    double w = weight_mouth * weight_mouth;
+    for (int k = 0; k < 3; ++k) {
+        int o = (k + 1) % 3;
+        add_square(s, hinge[k], gradient[k], w);
+        add_scaled(s->right[hinge[k]], gradient[k], w * r);
+        add_product(s, ax_blocks_find(&s->matrix, hinge[k], hinge[o]), hinge[k], hinge[o], gradient[k], gradient[o], w);
+    }
 }
 
 // The condensed matrix and the gradient of the soft rows (into `right`).
@@ -318,14 +362,23 @@ static void assemble(solver* s, double mu)
         gradient[2][0] = b[1] / b2, gradient[2][1] = -b[0] / b2;
         for (int c = 0; c < 2; ++c)
             gradient[1][c] = -(gradient[0][c] + gradient[2][c]);
-        double r = mouth_angle(s, x, m) - s->mouth_aim, w2 = weight_mouth * weight_mouth;
-        for (int k = 0; k < 3; ++k) {
-            add_square(s, hinge[k], gradient[k], w2);
-            add_scaled(s->right[hinge[k]], gradient[k], w2 * r);
-            int o = (k + 1) % 3;
-            add_product(s, ax_blocks_find(&s->matrix, hinge[k], hinge[o]), hinge[k], hinge[o], gradient[k], gradient[o],
-                        w2);
+        add_row(s, hinge, gradient, mouth_angle(s, x, m) - s->mouth_aim);
+    }
+    for (int pair = 0; pair < s->problem->apart_count; ++pair) {
+        int end[3];
+        double into = apart_depth(s, x, pair, end) + apart_margin;
+        if (into <= 0)
+            continue;
+        double gradient[3][UNKNOWNS] = {{0}}, e[2] = {x[end[1]][0] - x[end[0]][0], x[end[1]][1] - x[end[0]][1]};
+        double d[2] = {x[end[2]][0] - x[end[0]][0], x[end[2]][1] - x[end[0]][1]};
+        double length2 = e[0] * e[0] + e[1] * e[1], t = (e[0] * d[0] + e[1] * d[1]) / length2;
+        double normal[2] = {-e[1] / sqrt(length2), e[0] / sqrt(length2)};
+        for (int c = 0; c < 2; ++c) {
+            gradient[0][c] = -(1 - t) * normal[c];
+            gradient[1][c] = -t * normal[c];
+            gradient[2][c] = normal[c];
         }
+        add_row(s, end, gradient, into);
     }
 }
 

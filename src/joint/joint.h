@@ -12,6 +12,8 @@ typedef struct ax_joint_problem {
     bool released;             // border triangles may deviate from equilateral
     double mouth_min;          // radians, lower bound of every mouth angle
     double scale_max;          // largest scale factor, which tells what mouths to expect
+    int apart_count;           // pairs of panels that would overlap flat without being held apart
+    const int (*apart)[2];
 } ax_joint_problem;
 
 typedef struct ax_joint_result {
