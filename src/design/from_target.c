@@ -120,10 +120,10 @@ static double rim_distance(const flat_domain* d, const ax_lattice* lattice)
 
 // Best of a number of random orientations and offsets at one spacing.
 static ax_status search_lattice(const flat_domain* d, const ax_design_options* options, double spacing, int trials,
-                                ax_lattice* best, ax_error* error)
+                                uint64_t seed, ax_lattice* best, ax_error* error)
 {
     const ax_outline outline = {d->flattening->rim_count, (const double(*)[2])d->outline};
-    ax_random random = {20180625};
+    ax_random random = {20180625 + seed};
     double best_score = INFINITY;
     bool fixed = options->angle_given || options->align_to_edge;
     double angle = options->align_to_edge ? longest_straight_part((const double(*)[2])d->outline, outline.count)
@@ -151,7 +151,8 @@ static ax_status search_lattice(const flat_domain* d, const ax_design_options* o
 }
 
 // Lattice with the count or edge asked; the spacing is corrected until the count is within 2 %.
-static ax_status lay(const flat_domain* d, const ax_design_options* options, ax_lattice* lattice, ax_error* error)
+static ax_status lay(const flat_domain* d, const ax_design_options* options, uint64_t seed, ax_lattice* lattice,
+                     ax_error* error)
 {
     double spacing =
         options->edge > 0 ? 2 * options->edge / d->mean_scale : sqrt(4 * d->area / (sqrt(3) * options->triangles));
@@ -164,7 +165,7 @@ static ax_status lay(const flat_domain* d, const ax_design_options* options, ax_
             options->edge, expected, LEAST_TRIANGLES, MOST_TRIANGLES);
     int trials = (int)ax_clamp(4e5 / expected, 4, TRIALS);
     for (int round = 0;; ++round) {
-        ax_status status = search_lattice(d, options, spacing, trials, lattice, error);
+        ax_status status = search_lattice(d, options, spacing, trials, seed, lattice, error);
         double share = status == AX_OK ? lattice->linkage.triangle_count / (double)options->triangles : 0;
         if (status != AX_OK || options->edge > 0 || round == 4 || fabs(share - 1) < 0.02)
             return status;
@@ -288,19 +289,27 @@ static ax_status verify(const ax_design* design, const ax_joint_result* joint, a
     return AX_OK;
 }
 
+// Progress of try number `k` of work that may have to be tried again: half of what the tries before have left.
+static const ax_progress* remaining(ax_progress_part* slot, const ax_progress* progress, int k)
+{
+    return ax_progress_within(slot, progress, 1 - ldexp(1, -k), 1 - ldexp(1, -k - 1));
+}
+
 // Solves jointly; where panels then overlap flat, names those pairs to the solver and solves again. The mouth bound keeps
 // neighbours apart, but two rim panels can meet past the ends of an opening, where no mouth sees them.
 static ax_status solve_apart(ax_design* design, ax_joint_problem* problem, const ax_progress* progress, ax_error* error)
 {
     enum { ROUNDS = 5, MOST_PAIRS = 4096 };
     int(*pairs)[2] = ax_alloc(MOST_PAIRS, sizeof *pairs), count = 0;
-    ax_joint_result joint;
+    ax_joint_result joint = {0};
     ax_status status = AX_OK;
     double start = ax_seconds();
     problem->apart = (const int(*)[2])pairs;
     for (int round = 0; round < ROUNDS && status == AX_OK; ++round) {
+        ax_progress_part slot;
         problem->apart_count = count;
-        status = ax_joint_solve(problem, design->flat, design->deployed, progress, &joint, error);
+        status =
+            ax_joint_solve(problem, design->flat, design->deployed, remaining(&slot, progress, round), &joint, error);
         design->report.joint_steps += joint.steps;
         int found = status == AX_OK ? ax_measure_overlaps(&design->linkage, (const double(*)[2])design->flat, 0,
                                                           MOST_PAIRS - count, pairs + count)
@@ -310,7 +319,7 @@ static ax_status solve_apart(ax_design* design, ax_joint_problem* problem, const
         count = count + found < MOST_PAIRS ? count + found : MOST_PAIRS;
     }
     ax_free(pairs);
-    design->report.seconds_joint = ax_seconds() - start;
+    design->report.seconds_joint += ax_seconds() - start;
     if (status == AX_OK) {
         ax_design_measure(design);
         status = verify(design, &joint, error);
@@ -318,34 +327,57 @@ static ax_status solve_apart(ax_design* design, ax_joint_problem* problem, const
     return status;
 }
 
-// Flat and deployed states of a target that has passed the screen.
+// Flat and deployed states on one lattice.
+static ax_status solve_on_lattice(ax_design* design, const flat_domain* domain, ax_lattice* lattice,
+                                  const ax_design_options* options, double scale_max, const ax_progress* progress,
+                                  ax_error* error)
+{
+    bool snap = options->border != AX_BORDER_INSIDE;
+    int n = lattice->linkage.hinge_count;
+    ax_lattice_renumber(lattice);
+    design->flat = ax_alloc((size_t)n, sizeof *design->flat);
+    design->deployed = ax_alloc((size_t)n, sizeof *design->deployed);
+    lift(domain, lattice, snap, design->flat, design->deployed);
+    design->linkage = lattice->linkage;
+    lattice->linkage = (ax_linkage){0};
+    design->supports = ax_copy(design->linkage.on_rim, (size_t)n, 1);
+
+    ax_joint_problem problem = {.linkage = &design->linkage,
+                                .surface = domain->target_tree,
+                                .rim = snap ? domain->target_curve : NULL,
+                                .released = options->border == AX_BORDER_RELEASED,
+                                .mouth_min = options->mouth_min * AX_PI / 180,
+                                .scale_max = scale_max};
+    return solve_apart(design, &problem, progress, error);
+}
+
+static void drop_states(ax_design* design)
+{
+    void* blocks[] = {design->flat, design->deployed, design->supports, design->scale};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+        ax_free(blocks[k]);
+    ax_linkage_free(&design->linkage);
+    design->flat = NULL, design->deployed = NULL, design->supports = NULL, design->scale = NULL;
+}
+
+// Flat and deployed states of a target that has passed the screen. Where the rim cuts a lattice badly, another is tried.
 static ax_status solve_states(ax_design* design, const ax_design_options* options, const ax_screen* screen,
                               const ax_progress* progress, ax_error* error)
 {
+    enum { LATTICES = 5 };
     flat_domain domain;
     make_domain(&design->target, &screen->flattening, options->target.scale_lo, options->target.scale_hi, &domain);
-    ax_lattice lattice = {0};
-    ax_status status = lay(&domain, options, &lattice, error);
-    if (status == AX_OK) {
-        ax_lattice_renumber(&lattice);
-        bool snap = options->border != AX_BORDER_INSIDE;
-        int n = lattice.linkage.hinge_count;
-        design->flat = ax_alloc((size_t)n, sizeof *design->flat);
-        design->deployed = ax_alloc((size_t)n, sizeof *design->deployed);
-        lift(&domain, &lattice, snap, design->flat, design->deployed);
-        design->linkage = lattice.linkage;
-        lattice.linkage = (ax_linkage){0};
-        design->supports = ax_copy(design->linkage.on_rim, (size_t)n, 1);
-
-        ax_joint_problem problem = {.linkage = &design->linkage,
-                                    .surface = domain.target_tree,
-                                    .rim = snap ? domain.target_curve : NULL,
-                                    .released = options->border == AX_BORDER_RELEASED,
-                                    .mouth_min = options->mouth_min * AX_PI / 180,
-                                    .scale_max = screen->scale_hi};
-        status = solve_apart(design, &problem, progress, error);
+    ax_status status = AX_CANNOT_REALISE;
+    for (int k = 0; k < LATTICES && status == AX_CANNOT_REALISE; ++k) {
+        ax_progress_part slot;
+        ax_lattice lattice = {0};
+        drop_states(design);
+        status = lay(&domain, options, (uint64_t)k, &lattice, error);
+        if (status == AX_OK)
+            status = solve_on_lattice(design, &domain, &lattice, options, screen->scale_hi,
+                                      remaining(&slot, progress, k), error);
+        ax_lattice_free(&lattice);
     }
-    ax_lattice_free(&lattice);
     free_domain(&domain);
     return status;
 }
