@@ -135,7 +135,7 @@ static double ellipse(double t)
 // A kidney: the rim is concave on one side.
 static double kidney(double t)
 {
-    return 4.4 * (1 + 0.16 * cos(2 * t) - 0.13 * cos(3 * t + 0.4) + 0.04 * sin(t));
+    return 4.4 * (1 + 0.22 * cos(2 * t) - 0.12 * sin(t) + 0.08 * sin(3 * t));
 }
 
 static double rounded(double t)

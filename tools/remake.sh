@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Makes what is drawn or written by the program itself again: example surfaces, README pictures, command reference.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+install_packages run
+build release
+bin=$root/build/release/bin
+mkdir -p "$root/docs/pictures"
+"$bin/make_surfaces" "$root/examples/surfaces"
+"$bin/make_pictures" "$root/examples/surfaces" "$root/docs/pictures"
+"$bin/auxshell" --reference >"$root/docs/command.md"
