@@ -119,7 +119,8 @@ static double mouth_angle(const solver* s, const state* x, int m)
 }
 
 // Depth by which a pair of panels overlaps along its best separating edge (negative: the gap there), and the hinges that
-// decide it: the edge from end[0] to end[1] of one panel, and the deepest corner end[2] of the other.
+// decide it: the edge from end[0] to end[1] of one panel, and the deepest corner end[2] of the other. A hinge that both share
+// does not count: mouths keep such panels apart.
 static double apart_depth(const solver* s, const state* x, int pair, int end[3])
 {
     double least = INFINITY;
@@ -129,8 +130,9 @@ static double apart_depth(const solver* s, const state* x, int pair, int end[3])
         int a = of[side % 3], b = of[(side + 1) % 3], deepest = -1;
         double depth = -INFINITY, length = ax_distance2(x[a], x[b]);
         for (int k = 0; k < 3; ++k) {
+            bool shared = other[k] == of[0] || other[k] == of[1] || other[k] == of[2];
             double d = ax_orient2(x[a], x[b], x[other[k]]) / length;
-            if (d > depth)
+            if (!shared && d > depth)
                 depth = d, deepest = other[k];
         }
         if (depth < least)
