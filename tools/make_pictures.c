@@ -35,7 +35,8 @@ static void draw_screen(const char* folder, const char* name, const ax_mesh* mes
     ax_screen_free(&screen);
 }
 
-static void draw_design(const char* folder, const char* name, const ax_mesh* mesh)
+// Draws the states from `first` to the simulated one.
+static void draw_design(const char* folder, const char* name, const ax_mesh* mesh, ax_state first)
 {
     char path[4096];
     ax_error error;
@@ -43,10 +44,12 @@ static void draw_design(const char* folder, const char* name, const ax_mesh* mes
     ax_design_options options = ax_design_options_default();
     options.project = true;
     require(ax_design_from_target(mesh, &options, NULL, &design, &error), &error);
-    snprintf(path, sizeof path, "%s/%s-flat.png", folder, name);
-    require(ax_picture_design(&design, AX_STATE_FLAT, WIDTH, HEIGHT, path, &error), &error);
-    snprintf(path, sizeof path, "%s/%s-simulated.png", folder, name);
-    require(ax_picture_design(&design, AX_STATE_SIMULATED, WIDTH, HEIGHT, path, &error), &error);
+    static const char* const names[] = {
+        [AX_STATE_FLAT] = "flat", [AX_STATE_DEPLOYED] = "deployed", [AX_STATE_SIMULATED] = "simulated"};
+    for (ax_state state = first; state <= AX_STATE_SIMULATED; ++state) {
+        snprintf(path, sizeof path, "%s/%s-%s.png", folder, name, names[state]);
+        require(ax_picture_design(&design, state, WIDTH, HEIGHT, path, &error), &error);
+    }
     ax_design_free(&design);
 }
 
@@ -57,9 +60,9 @@ int main(int argc, char** argv)
         return 2;
     }
     ax_mesh kidney = read_surface(argv[1], "kidney_dome"), valley = read_surface(argv[1], "valley_roof");
-    draw_design(argv[2], "kidney_dome", &kidney);
+    draw_design(argv[2], "kidney_dome", &kidney, AX_STATE_FLAT);
     draw_screen(argv[2], "valley_roof", &valley);
-    draw_design(argv[2], "valley_roof", &valley);
+    draw_design(argv[2], "valley_roof", &valley, AX_STATE_SIMULATED);
     ax_mesh_free(&kidney);
     ax_mesh_free(&valley);
     return 0;

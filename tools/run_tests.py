@@ -69,7 +69,7 @@ def test_steps():
             steps.append(Step(script.stem, [sys.executable, str(script)]))
             continue
         steps.append(Step(f"release/{script.stem}", [sys.executable, str(script)], "release"))
-        if "AX_QUICK" in text:
+        if "QUICK" in text:
             steps.append(Step(f"sanitize/{script.stem}", [sys.executable, str(script)], "sanitize", True))
     return steps
 

@@ -78,7 +78,7 @@ ax_status ax_file_commit(ax_file* file, ax_error* error)
         return AX_OK;
     }
     ax_status status = ax_fail(error, AX_FAILED, "Cannot write %s: %s. Nothing was changed.", file->destination,
-                               errno ? strerror(errno) : "the disk did not take it");
+                               errno ? strerror(errno) : "the disk did not take it; it may be full");
     ax_file_abandon(file);
     return status;
 }
