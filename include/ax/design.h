@@ -70,6 +70,7 @@ typedef struct ax_report {
     double edge_force_min, edge_force_max; // N, tension positive
     double compressed_share;               // share of edges pushed
     double hinge_force_max;                // N, the largest force one panel passes on at a hinge
+    double energy;                         // J, of the load at the simulated state: compare where equilibria are many
     double load_total, reaction_total;     // N, sums of magnitudes
     // effort
     int joint_steps, projective_steps, newton_steps;

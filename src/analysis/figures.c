@@ -52,6 +52,7 @@ static const ax_figure figures[] = {
     {NUMBER(edge_force_max, 1), DEPLOYMENT, .label = "Largest edge force", .unit = "N"},
     {NUMBER(compressed_share, 1), DEPLOYMENT, .label = "Share of edges pushed", .unit = ""},
     {NUMBER(hinge_force_max, 1), DEPLOYMENT, .label = "Largest hinge force", .unit = "N"},
+    {NUMBER(energy, 1), DEPLOYMENT, .label = "Energy of the load", .unit = "J"},
     {NUMBER(load_total, 1), DEPLOYMENT, .label = "Load in all", .unit = "N"},
     {NUMBER(reaction_total, 1), DEPLOYMENT, .label = "Support reactions in all", .unit = "N"},
 

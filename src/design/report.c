@@ -60,8 +60,10 @@ static void measure_simulated(const ax_design* design, ax_report* r)
     r->edge_force_min = r->edge_force_max = r->compressed_share = r->hinge_force_max = NAN;
     r->load_total = r->reaction_total = NAN;
     r->simulated_max_hinge = -1;
-    if (!r->simulated)
+    if (!r->simulated) {
+        r->energy = NAN;
         return;
+    }
     double sum = 0, most = 0;
     for (int h = 0; h < linkage->hinge_count; ++h) {
         double distance = ax_distance3(places[h], design->deployed[h]);

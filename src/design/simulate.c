@@ -70,11 +70,10 @@ ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_pr
     else if (result.exact)
         keep_solution(design, &model, (const double(*)[3])x, force, newton);
     else if (result.force_over_tension > 100 && result.residuals.edge > 1e-3)
-        status =
-            ax_fail(error, AX_CANNOT_REALISE,
-                    "The supports are too far apart for the linkage: edges would have to stretch by up to %.1e and "
-                    "forces grow without bound. Bring the supports closer, or raise the scale factors.",
-                    result.residuals.edge);
+        status = ax_fail(
+            error, AX_CANNOT_REALISE,
+            "The supports are too far apart: even fully open the linkage does not reach them, and edge forces grow "
+            "without bound. Bring the supports closer, or raise the scale factors.");
     else
         status =
             ax_fail(error, AX_FAILED,
@@ -84,6 +83,7 @@ ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_pr
                     result.residuals.edge, result.residuals.force, result.projective_steps, result.newton_steps,
                     result.stable || result.residuals.force > 1e-10 ? "" : ", and the state found is not stable");
     ax_design_measure(design);
+    design->report.energy = status == AX_OK ? result.energy * newton * model.unit * metre : NAN;
     design->report.stable = status == AX_OK && result.stable;
     design->report.projective_steps = result.projective_steps;
     design->report.newton_steps = result.newton_steps;
