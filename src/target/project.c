@@ -29,7 +29,17 @@ typedef struct obstacle {
     unsigned char* on_rim;
     double curvature; // eps
     double diagonal;
+    const ax_progress* progress;
+    double change; // of h in the last step, over the diagonal; infinite before the first
+    bool cancelled;
 } obstacle;
+
+static bool go_on(obstacle* o)
+{
+    double fraction = isinf(o->change) ? 0 : ax_clamp(log(o->change) / log(SETTLED), 0, 1);
+    o->cancelled = !ax_progress_report(o->progress, "Projecting to positive mean curvature", fraction, o->change);
+    return !o->cancelled;
+}
 
 static double least_facing(const ax_mesh* mesh, const double axis[3])
 {
@@ -140,6 +150,7 @@ static bool solve_complementarity(obstacle* o, const ax_sparse* matrix, const do
 
     bool sound = true, changed = true;
     for (int round = 0; round < MOST_ACTIVE_SETS && sound && changed; ++round) {
+        sound = go_on(o);
         int count = 0;
         for (int v = 0; v < n; ++v) {
             index[v] = moved[v] ? count : -1;
@@ -147,7 +158,7 @@ static bool solve_complementarity(obstacle* o, const ax_sparse* matrix, const do
                 part[count++] = -base[v];
         }
         memset(o->trial, 0, (size_t)n * sizeof *o->trial);
-        if (count) {
+        if (count && sound) {
             ax_sparse active = ax_sparse_principal(matrix, index);
             ax_cholesky* factor = ax_cholesky_analyse(&active, AX_FACTOR_ONCE);
             sound = ax_cholesky_factor(factor, &active);
@@ -168,7 +179,7 @@ static bool solve_complementarity(obstacle* o, const ax_sparse* matrix, const do
         }
     }
     for (int v = 0; v < n; ++v)
-        o->trial[v] = fmax(o->trial[v], 0);
+        o->trial[v] = o->trial[v] < 0 ? 0 : o->trial[v]; // keeps NaN, which step() looks for
     ax_free(index);
     ax_free(residual);
     ax_free(part);
@@ -177,8 +188,8 @@ static bool solve_complementarity(obstacle* o, const ax_sparse* matrix, const do
 }
 
 // Goes from h to the solution of the linear problem: all of the way, half of it when `cautious`, less where faces would turn
-// over. The distance to that solution, or NaN with everything left as it was.
-static double step(obstacle* o, bool cautious)
+// over. False, with everything left as it was, when that fails or is cancelled.
+static bool step(obstacle* o, bool cautious)
 {
     int n = o->mesh.vertex_count;
     double* base = AX_NEW(double, n);
@@ -189,9 +200,10 @@ static double step(obstacle* o, bool cautious)
     ax_free(base);
 
     double change = 0;
-    for (int v = 0; v < n; ++v)
+    for (int v = 0; v < n; ++v) {
+        sound = sound && isfinite(o->trial[v]);
         change = fmax(change, fabs(o->trial[v] - o->h[v]));
-    sound = sound && isfinite(change);
+    }
     for (int halving = 0; sound; ++halving) {
         for (int v = 0; (halving || cautious) && v < n; ++v)
             o->trial[v] = (o->h[v] + o->trial[v]) / 2;
@@ -202,13 +214,14 @@ static double step(obstacle* o, bool cautious)
     }
     if (!sound) {
         move(o, o->h);
-        return NAN;
+        return false;
     }
     memcpy(o->h, o->trial, (size_t)n * sizeof *o->h);
-    return change;
+    o->change = change / o->diagonal;
+    return true;
 }
 
-static obstacle obstacle_make(const ax_mesh* start, double area)
+static obstacle obstacle_make(const ax_mesh* start, double area, const ax_progress* progress)
 {
     int n = start->vertex_count;
     obstacle o = {.start = start,
@@ -217,7 +230,8 @@ static obstacle obstacle_make(const ax_mesh* start, double area)
                   .h = AX_NEW0(double, n),
                   .trial = AX_NEW(double, n),
                   .curvature = LEAST_CURVATURE / sqrt(area),
-                  .diagonal = ax_diagonal(start)};
+                  .diagonal = ax_diagonal(start),
+                  .progress = progress};
     ax_topology topology = ax_topology_make(start);
     o.on_rim = ax_copy(topology.on_rim, (size_t)n, 1);
     ax_topology_free(&topology);
@@ -247,50 +261,45 @@ static double least_curvature(const obstacle* o)
 
 // Steps from h = 0 until the surface rests and H >= eps; ends early when a step fails or eight steps have not halved the change. What
 // has been reached is kept.
-static ax_status settle(obstacle* o, const ax_progress* progress, int* steps, bool* settled, ax_error* error)
+static void settle(obstacle* o, int* steps, bool* settled)
 {
     memset(o->h, 0, (size_t)o->mesh.vertex_count * sizeof *o->h);
     move(o, o->h);
     *settled = false;
-    double change = INFINITY, last = INFINITY, eight_ago = INFINITY;
-    for (int k = 0; k < MOST_STEPS && !*settled; ++k) {
-        double fraction = k ? ax_clamp(log(change / o->diagonal) / log(SETTLED), 0, 1) : 0;
-        if (!ax_progress_report(progress, "Projecting to positive mean curvature", fraction, change / o->diagonal))
-            return ax_fail(error, AX_CANCELLED, "Cancelled.");
-        bool cautious = change > last;
-        last = change;
-        change = step(o, cautious);
-        if (isnan(change))
+    double last = INFINITY, eight_ago = INFINITY;
+    o->change = INFINITY;
+    for (int k = 1; k <= MOST_STEPS && !*settled; ++k) {
+        bool cautious = o->change > last;
+        last = o->change;
+        if (!step(o, cautious))
             break;
         ++*steps;
-        *settled = change <= SETTLED * o->diagonal && least_curvature(o) >= o->curvature;
-        if (k % 8 == 7) {
-            if (change > eight_ago / 2)
+        *settled = o->change <= SETTLED && least_curvature(o) >= o->curvature;
+        if (k % 8 == 0) {
+            if (o->change > eight_ago / 2)
                 break;
-            eight_ago = change;
+            eight_ago = o->change;
         }
     }
-    return AX_OK;
 }
 
 // Along an axis first, if there is one, since that keeps the plan. There a steep part behind a concave rim can have no solution (it
 // would have to hang over the rim); along the vertex normals it has. The better of the two is kept.
-static ax_status solve(obstacle* o, const ax_progress* progress, int* steps, ax_error* error)
+static ax_status solve(obstacle* o, int* steps, ax_error* error)
 {
     int n = o->mesh.vertex_count;
     double axis[3], *along_axis = NULL, least = -INFINITY;
     bool settled = false;
-    ax_status status = AX_OK;
     if (find_axis(o->start, axis)) {
         for (int v = 0; v < n; ++v)
             memcpy(o->direction[v], axis, sizeof axis);
-        status = settle(o, progress, steps, &settled, error);
+        settle(o, steps, &settled);
         along_axis = ax_copy(o->h, (size_t)n, sizeof *o->h);
         least = least_curvature(o);
     }
-    if (status == AX_OK && !settled) {
+    if (!settled && !o->cancelled) {
         ax_vertex_normals(o->start, o->direction);
-        status = settle(o, progress, steps, &settled, error);
+        settle(o, steps, &settled);
         if (along_axis && least >= least_curvature(o)) {
             memcpy(o->h, along_axis, (size_t)n * sizeof *o->h);
             for (int v = 0; v < n; ++v)
@@ -299,11 +308,13 @@ static ax_status solve(obstacle* o, const ax_progress* progress, int* steps, ax_
         }
     }
     ax_free(along_axis);
-    if (status == AX_OK && *steps == 0)
-        status = ax_fail(error, AX_FAILED,
-                         "The surface could not be projected: some triangles are too thin. Remesh it with rounder "
-                         "triangles.");
-    return status;
+    if (o->cancelled)
+        return ax_fail(error, AX_CANCELLED, "Cancelled.");
+    if (*steps == 0)
+        return ax_fail(error, AX_FAILED,
+                       "The surface could not be projected: some triangles are too thin. Remesh it with rounder "
+                       "triangles.");
+    return AX_OK;
 }
 
 ax_status ax_target_project(ax_mesh* mesh, const ax_progress* progress, ax_projection* report, ax_error* error)
@@ -325,8 +336,8 @@ ax_status ax_target_project(ax_mesh* mesh, const ax_progress* progress, ax_proje
     ax_mesh start = ax_mesh_copy(mesh);
     for (int v = 0; v < start.vertex_count; ++v)
         ax_sub3(mesh->positions[v], mesh->positions[0], start.positions[v]);
-    obstacle o = obstacle_make(&start, area);
-    ax_status status = solve(&o, progress, &report->steps, error);
+    obstacle o = obstacle_make(&start, area, progress);
+    ax_status status = solve(&o, &report->steps, error);
     if (status == AX_OK) {
         curvature = ax_curvature_measure(&o.mesh);
         report->curvature_min = curvature.min;
