@@ -116,7 +116,8 @@ static void a_scaled_surface_flattens_to_the_scaled_sheet(void** state)
     ax_mesh_free(&mesh);
 }
 
-// The turning in the plane, k + (A u) on the rim, sums to 2 pi (Gauss and Bonnet) and is that of the curve which came out.
+// The turning in the plane, k + (A u) on the rim, sums to 2 pi (Gauss and Bonnet) and is that of the curve which came
+// out.
 static void the_flat_rim_turns_by_what_the_scale_says(void** state)
 {
     (void)state;
@@ -189,7 +190,8 @@ static void a_disk_boundary_is_a_circle(void** state)
         perimeter += length;
     }
     assert_near(mean / perimeter, 0, 1e-12);
-    // no triangle can stay itself where a corner of the plan is bent straight, so this falls with their share: 1.037 at n = 60
+    // no triangle can stay itself where a corner of the plan is bent straight, so this falls with their share: 1.037 at
+    // n = 60
     assert_at_most(flat.quasi_conformal_mean, 1.08);
     ax_flattening_free(&flat);
     ax_mesh_free(&mesh);
@@ -256,7 +258,8 @@ static void a_round_plan_gets_evenly_spaced_corners(void** state)
 static void corners_follow_the_rim_and_then_the_angles(void** state)
 {
     (void)state;
-    // a rectangle of 3 x 1 whose corners are rounded off over three vertices, and a nick that is too near to one of them
+    // a rectangle of 3 x 1 whose corners are rounded off over three vertices, and a nick that is too near to one of
+    // them
     enum { N = 80 };
     double turning[N] = {0}, length[N];
     for (int k = 0; k < N; ++k)

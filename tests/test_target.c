@@ -319,7 +319,8 @@ static void projection_does_not_depend_on_the_frame(void** state)
     ax_mesh_free(&mesh);
 }
 
-// Steep walls over a plan with three bays: above a bay the nearest surface has to hang over the rim, which vertical moves cannot do.
+// Steep walls over a plan with three bays: above a bay the nearest surface has to hang over the rim, which vertical
+// moves cannot do.
 static ax_mesh bays(int rings)
 {
     ax_mesh mesh = shape_over_disk(rings, flat_sheet);

@@ -1,4 +1,5 @@
-// Screening a target surface: can it become a deployable linkage, by which load, and if not, what is the nearest that can?
+// Screening a target surface: can it become a deployable linkage, by which load, and if not, what is the nearest
+// that can?
 #pragma once
 
 #include "ax/flatten.h"
@@ -52,11 +53,11 @@ typedef struct ax_screen {
 
 void ax_screen_free(ax_screen* screen);
 
-// Screens a surface as ax_mesh_read returns it. NULL options: defaults. Fails only on numerical breakdown or cancellation:
-// a surface that cannot deploy is an answer (verdict), not an error.
+// Screens a surface as ax_mesh_read returns it. NULL options: defaults. Fails only on impossible options, numerical
+// breakdown or cancellation: a surface that cannot deploy is an answer (verdict), not an error.
 ax_status ax_target_screen(const ax_mesh* mesh, const ax_target_options* options, const ax_progress* progress,
                            ax_screen* out, ax_error* error);
 
-// Moves `mesh` to the nearest surface of positive mean curvature outside it (obstacle problem, rim fixed); topology is kept.
-// AX_CANNOT_REALISE if no part of the surface is dome-like, so that projection would replace all of it.
+// Moves `mesh` to the nearest surface of positive mean curvature outside it (obstacle problem, rim fixed); topology is
+// kept. AX_CANNOT_REALISE if no part of the surface is dome-like, so that projection would replace all of it.
 ax_status ax_target_project(ax_mesh* mesh, const ax_progress* progress, ax_projection* report, ax_error* error);

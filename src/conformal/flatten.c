@@ -1,9 +1,11 @@
-// Boundary First Flattening (Sawhney and Crane 2017). The logarithm u of the length scale of a conformal map to the plane
-// satisfies A u = -K inside and A u = k~ - k on the rim (Cherrier), with the cotangent Laplacian A, the angle defect K, the turning
-// k of the rim on the surface and k~ in the plane. u and k~ on the rim give the rim's curve, and its harmonic extension the map.
+// Boundary First Flattening (Sawhney and Crane 2017). The logarithm u of the length scale of a conformal map to the
+// plane satisfies A u = -K inside and A u = k~ - k on the rim (Cherrier), with the cotangent Laplacian A, the angle
+// defect K, the turning k of the rim on the surface and k~ in the plane. u and k~ on the rim give the rim's curve, and
+// its harmonic extension the map.
 //
-// Both coordinates are extended harmonically, from the one factorisation of the interior block that also gives u. The second as
-// harmonic conjugate of the first needs a factorisation of all of A as well, and is no more conformal: docs/flattening.md.
+// Both coordinates are extended harmonically, from the one factorisation of the interior block that also gives u. The
+// second as harmonic conjugate of the first needs a factorisation of all of A as well, and is no more conformal:
+// docs/flattening.md.
 #include "ax/flatten.h"
 
 #include "base/vec.h"
@@ -107,7 +109,8 @@ static ax_status prepare(const ax_mesh* mesh, problem* p, ax_error* error)
     return p->factor || !p->interior_count ? AX_OK : breakdown(error);
 }
 
-// Solves A x = -source inside for given x on the rim, for `columns` functions stored one after the other. NULL source: 0.
+// Solves A x = -source inside for given x on the rim, for `columns` functions stored one after the other. NULL source:
+// 0.
 static void solve_dirichlet(const problem* p, const double* source, double* x, int columns)
 {
     if (!p->interior_count)
@@ -149,8 +152,8 @@ static void flat_lengths(const problem* p, const double* u, double* target)
         target[k] = exp((u[p->rim[k]] + u[p->rim[(k + 1) % p->rim_count]]) / 2) * p->length[k];
 }
 
-// Finds u from the turning of the rim in the plane. A with one rim vertex held at 0 is positive definite; the constant that stays
-// free is set so that u averages 0 over the rim's length.
+// Finds u from the turning of the rim in the plane. A with one rim vertex held at 0 is positive definite; the constant
+// that stays free is set so that u averages 0 over the rim's length.
 typedef struct neumann {
     int* index;
     ax_cholesky* factor;
@@ -227,8 +230,8 @@ static void polygon_rim(const problem* p, const neumann* solver, const ax_flatte
     ax_free(target);
 }
 
-// Turning in proportion to the lengths, iterated (section 5.2 of the paper). A wave of m periods along the rim shrinks by m in each
-// step; ten steps, as in the paper, leave a thousandth of an ellipse, so it goes on to 1e-9 or forty.
+// Turning in proportion to the lengths, iterated (section 5.2 of the paper). A wave of m periods along the rim shrinks
+// by m in each step; ten steps, as in the paper, leave a thousandth of an ellipse, so it goes on to 1e-9 or forty.
 static void circle_rim(const problem* p, const neumann* solver, double* u, double (*curve)[2])
 {
     int n = p->rim_count;
@@ -331,8 +334,8 @@ static void centre(const problem* p, double (*uv)[2])
             uv[v][d] -= sum[d] / area;
 }
 
-// The map on one face as f = a z + b conj(z): its singular values are |a| + |b| and ||a| - |b||, and it turns over when |a| < |b|.
-// True unless the face is turned over.
+// The map on one face as f = a z + b conj(z): its singular values are |a| + |b| and ||a| - |b||, and it turns over when
+// |a| < |b|. True unless the face is turned over.
 static bool face_distortion(const ax_mesh* mesh, const double (*uv)[2], int face, double* ratio, double* area)
 {
     const int* corner = mesh->faces[face];

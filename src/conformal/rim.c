@@ -126,7 +126,8 @@ static int find_corners(int count, const double* turning, const double* place, i
     return found;
 }
 
-// Divides the sides between the corners found until there are `wanted`: the side with the longest parts gets one part more.
+// Divides the sides between the corners found until there are `wanted`: the side with the longest parts gets one part
+// more.
 static void divide_sides(int count, const double* place, int found, int wanted, int* corner)
 {
     int *parts = AX_NEW(int, found), *first = AX_NEW(int, found + 1);

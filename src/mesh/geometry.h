@@ -11,8 +11,8 @@ double ax_diagonal(const ax_mesh* mesh);
 
 // Area-weighted unit normals. out: vertex_count.
 void ax_vertex_normals(const ax_mesh* mesh, double (*out)[3]);
-// The part of the surface nearest to each vertex: Voronoi areas, in obtuse faces cut off at their middle lines (Meyer et al.
-// 2003). out: vertex_count.
+// The part of the surface nearest to each vertex: Voronoi areas, in obtuse faces cut off at their middle lines (Meyer
+// et al. 2003). out: vertex_count.
 void ax_vertex_areas(const ax_mesh* mesh, double* out);
 // Corner angles in radians. out: face_count x 3.
 void ax_corner_angles(const ax_mesh* mesh, double (*out)[3]);

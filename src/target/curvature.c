@@ -8,15 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-// All in units of 1 / sqrt(area), so that they mean the same at any size. H up to FLAT counts as zero: a sag of a seven thousandth
-// of the span, below what is made. A thousand times that much, reached on the most curved twentieth of the area, is what makes
-// part of a surface dome-like: a saddle that projection would replace altogether reaches 0.15, roofs with valleys 1.3 and more.
+// All in units of 1 / sqrt(area), so that they mean the same at any size. H up to FLAT counts as zero: a sag of a seven
+// thousandth of the span, below what is made. DOME_LIKE is asked of the most curved twentieth of the area: a saddle
+// that projection would replace altogether reaches 0.15, roofs with valleys 1.3 and more.
 static const double FLAT = 1e-3, DOME_LIKE = 0.5;
-// Share of the area on which noise at the rim and at poles is let pass.
+// Share of the area on which noise is let pass.
 static const double NOISE_SHARE = 0.01;
 
-// Average over the one-ring, weighted by area, of the vertices off the rim: on the rim the cotangent formula does not measure H,
-// and at the pole of a polar mesh a single vertex is wrong by a quarter.
+// Average over the one-ring, weighted by area, of the vertices off the rim, where the cotangent formula does not
+// measure H. It is what keeps single noisy vertices out of the verdict.
 static void average_over_rings(const ax_mesh* mesh, const unsigned char* on_rim, const double* area, double* mean)
 {
     int n = mesh->vertex_count;

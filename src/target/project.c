@@ -1,8 +1,9 @@
-// The nearest surface of positive mean curvature outside a given one, rim fixed, as an obstacle problem: with x = x0 + h n along
-// fixed directions n, find h >= 0 with H >= eps where h = 0 and H = eps where h > 0. H is that of the cotangent Laplacian, whose
-// weights lag one step behind (Pinkall and Polthier 1993, for minimal surfaces); each linear complementarity problem is solved by a
-// primal-dual active set (Hintermueller, Ito and Kunisch 2002). A mean curvature flow that only moves outward took 200 steps where
-// this takes ten, and broke meshes with deep valleys: docs/projection.md.
+// The nearest surface of positive mean curvature outside a given one, rim fixed, as an obstacle problem: with x = x0 +
+// h n along fixed directions n, find h >= 0 with H >= eps where h = 0 and H = eps where h > 0. H is that of the
+// cotangent Laplacian, whose weights lag one step behind (Pinkall and Polthier 1993, for minimal surfaces); each linear
+// complementarity problem is solved by a primal-dual active set (Hintermueller, Ito and Kunisch 2002). A mean curvature
+// flow that only moves outward took 200 steps where this takes ten, and broke meshes with deep valleys:
+// docs/projection.md.
 #include "ax/target.h"
 
 #include "base/vec.h"
@@ -68,8 +69,8 @@ static bool mean_normal(const ax_mesh* mesh, double normal[3])
     return length > 0;
 }
 
-// The axis along which the surface is a height field, z before the mean normal: along one direction no face can turn over, and along
-// z the plan stays as it is.
+// The axis along which the surface is a height field, z before the mean normal: along one direction no face can turn
+// over, and along z the plan stays as it is.
 static bool find_axis(const ax_mesh* mesh, double axis[3])
 {
     double axes[3][3] = {{0, 0, 1}, {0, 0, -1}};
@@ -187,8 +188,8 @@ static bool solve_complementarity(obstacle* o, const ax_sparse* matrix, const do
     return sound;
 }
 
-// Goes from h to the solution of the linear problem: all of the way, half of it when `cautious`, less where faces would turn
-// over. False, with everything left as it was, when that fails or is cancelled.
+// Goes from h to the solution of the linear problem: all of the way, half of it when `cautious`, less where faces would
+// turn over. False, with everything left as it was, when that fails or is cancelled.
 static bool step(obstacle* o, bool cautious)
 {
     int n = o->mesh.vertex_count;
@@ -259,8 +260,8 @@ static double least_curvature(const obstacle* o)
     return least;
 }
 
-// Steps from h = 0 until the surface rests and H >= eps; ends early when a step fails or eight steps have not halved the change. What
-// has been reached is kept.
+// Steps from h = 0 until the surface rests and H >= eps; ends early when a step fails or eight steps have not halved
+// the change. What has been reached is kept.
 static void settle(obstacle* o, int* steps, bool* settled)
 {
     memset(o->h, 0, (size_t)o->mesh.vertex_count * sizeof *o->h);
@@ -283,8 +284,8 @@ static void settle(obstacle* o, int* steps, bool* settled)
     }
 }
 
-// Along an axis first, if there is one, since that keeps the plan. There a steep part behind a concave rim can have no solution (it
-// would have to hang over the rim); along the vertex normals it has. The better of the two is kept.
+// Along an axis first, if there is one, since that keeps the plan. There a steep part behind a concave rim can have no
+// solution (it would have to hang over the rim); along the vertex normals it has. The better of the two is kept.
 static ax_status solve(obstacle* o, int* steps, ax_error* error)
 {
     int n = o->mesh.vertex_count;

@@ -46,8 +46,8 @@ static void say_place(ax_screen* screen, const double place[3])
     say(screen, "(%.*f, %.*f, %.*f)", decimals, place[0], decimals, place[1], decimals, place[2]);
 }
 
-// Gravity: every face looks up, or every face down, and the rim seen from above does not cross itself; then the surface covers its
-// plan once.
+// Gravity: every face looks up, or every face down, and the rim seen from above does not cross itself; then the surface
+// covers its plan once.
 static bool find_height_field(const ax_mesh* mesh, const ax_flattening* flattening, double* side)
 {
     double lowest = 1, highest = -1, sum = 0;

@@ -1,0 +1,132 @@
+// Sparse matrices and their factors against dense arithmetic.
+#include "base/random.h"
+#include "linalg/cholesky.h"
+
+#include "support/test.h"
+
+enum { N = 60 };
+
+// A random positive definite matrix with about five entries in a row, sparse and dense.
+static ax_sparse make(double dense[N][N], uint64_t seed)
+{
+    ax_random random = {seed};
+    ax_entries entries = {0};
+    for (int i = 0; i < N; ++i)
+        for (int j = 0; j < N; ++j)
+            dense[i][j] = 0;
+    for (int k = 0; k < 3 * N; ++k) {
+        int i = (int)ax_random_uniform(&random, 0, N), j = (int)ax_random_uniform(&random, 0, N);
+        double w = i == j ? 0.5 : ax_random_uniform(&random, 0.1, 1);
+        ax_entries_add(&entries, i, j, i == j ? w : -w);
+        ax_entries_add(&entries, i, i, w);
+        ax_entries_add(&entries, j, j, w);
+        dense[i][j] += i == j ? w : -w;
+        dense[j][i] += i == j ? 0 : -w;
+        dense[i][i] += w;
+        dense[j][j] += w;
+    }
+    for (int i = 0; i < N; ++i) {
+        ax_entries_add(&entries, i, i, 0.1);
+        dense[i][i] += 0.1;
+    }
+    return ax_entries_sparse(&entries, N);
+}
+
+static void entries_fold_sum_and_multiply(void** state)
+{
+    (void)state;
+    static double dense[N][N];
+    ax_sparse matrix = make(dense, 1);
+    for (int j = 0; j < N; ++j)
+        for (int k = matrix.start[j]; k < matrix.start[j + 1]; ++k) {
+            assert_true(matrix.row[k] >= j && (k == matrix.start[j] || matrix.row[k] > matrix.row[k - 1]));
+            assert_near(matrix.value[k], dense[matrix.row[k]][j], 1e-14);
+        }
+    ax_random random = {2};
+    double x[2 * N], y[2 * N];
+    for (int i = 0; i < 2 * N; ++i)
+        x[i] = ax_random_uniform(&random, -1, 1);
+    ax_sparse_multiply(&matrix, x, y, 2);
+    for (int i = 0; i < 2 * N; ++i) {
+        double sum = 0;
+        for (int j = 0; j < N; ++j)
+            sum += dense[i % N][j] * x[i / N * N + j];
+        assert_near(y[i], sum, 1e-12);
+    }
+    ax_sparse_free(&matrix);
+}
+
+static void a_principal_part_keeps_the_rows_that_have_a_number(void** state)
+{
+    (void)state;
+    static double dense[N][N];
+    ax_sparse matrix = make(dense, 3);
+    int index[N], old[N], count = 0;
+    for (int i = 0; i < N; ++i) {
+        index[i] = i % 3 ? count : -1;
+        if (index[i] >= 0)
+            old[count++] = i;
+    }
+    ax_sparse part = ax_sparse_principal(&matrix, index);
+    assert_int_equal(part.n, count);
+    double unit[N] = {0}, column[N];
+    for (int j = 0; j < count; ++j) {
+        unit[j] = 1;
+        ax_sparse_multiply(&part, unit, column, 1);
+        unit[j] = 0;
+        for (int i = 0; i < count; ++i)
+            assert_near(column[i], dense[old[i]][old[j]], 1e-14);
+    }
+    ax_sparse_free(&part);
+    ax_sparse_free(&matrix);
+}
+
+static void every_kind_of_factor_solves(void** state)
+{
+    (void)state;
+    static double dense[N][N];
+    ax_sparse matrix = make(dense, 4);
+    ax_random random = {5};
+    double x[3 * N], b[3 * N], back[3 * N];
+    for (int i = 0; i < 3 * N; ++i)
+        x[i] = ax_random_uniform(&random, -1, 1);
+    ax_sparse_multiply(&matrix, x, b, 3);
+    const ax_factor_kind kinds[] = {AX_FACTOR_SUPERNODAL, AX_FACTOR_ONCE, AX_FACTOR_PANELS};
+    for (int k = 0; k < 3; ++k) {
+        ax_cholesky* factor = ax_cholesky_analyse(&matrix, kinds[k]);
+        assert_true(ax_cholesky_factor(factor, &matrix));
+        ax_cholesky_solve(factor, b, back, 3);
+        for (int i = 0; i < 3 * N; ++i)
+            assert_near(back[i], x[i], 1e-11);
+        ax_cholesky_counters counters = ax_cholesky_count(factor);
+        assert_true(counters.analyses == 1 && counters.factorisations == 1 && counters.solves == 1);
+        ax_cholesky_free(factor);
+    }
+    ax_sparse_free(&matrix);
+}
+
+static void an_indefinite_matrix_is_reported_and_the_factor_stays_usable(void** state)
+{
+    (void)state;
+    static double dense[N][N];
+    ax_sparse matrix = make(dense, 6);
+    ax_cholesky* factor = ax_cholesky_analyse(&matrix, AX_FACTOR_ONCE);
+    double diagonal = matrix.value[matrix.start[7]];
+    matrix.value[matrix.start[7]] = -1;
+    assert_false(ax_cholesky_factor(factor, &matrix));
+    matrix.value[matrix.start[7]] = diagonal;
+    assert_true(ax_cholesky_factor(factor, &matrix));
+    ax_cholesky_free(factor);
+    ax_sparse_free(&matrix);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(entries_fold_sum_and_multiply),
+        cmocka_unit_test(a_principal_part_keeps_the_rows_that_have_a_number),
+        cmocka_unit_test(every_kind_of_factor_solves),
+        cmocka_unit_test(an_indefinite_matrix_is_reported_and_the_factor_stays_usable),
+    };
+    return cmocka_run_group_tests_name("linalg", tests, NULL, NULL);
+}
