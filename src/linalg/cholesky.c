@@ -1,7 +1,8 @@
 #include "linalg/cholesky.h"
 
+#include "linalg/cholmod_view.h"
+
 #include <assert.h>
-#include <cholmod.h>
 #include <dlfcn.h>
 #include <string.h>
 
@@ -30,22 +31,6 @@ static void hold_to_one_thread(void)
         if (symbol)
             set(settings[k].argument);
     }
-}
-
-static cholmod_sparse view(const ax_sparse* matrix)
-{
-    return (cholmod_sparse){.nrow = (size_t)matrix->n,
-                            .ncol = (size_t)matrix->n,
-                            .nzmax = (size_t)matrix->start[matrix->n],
-                            .p = matrix->start,
-                            .i = matrix->row,
-                            .x = matrix->value,
-                            .stype = -1,
-                            .itype = CHOLMOD_INT,
-                            .xtype = CHOLMOD_REAL,
-                            .dtype = CHOLMOD_DOUBLE,
-                            .sorted = 1,
-                            .packed = 1};
 }
 
 ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind)
@@ -79,7 +64,7 @@ ax_cholesky* ax_cholesky_analyse_ordered(const ax_sparse* matrix, ax_factor_kind
         AX_FACTOR_PANELS) // repeated solves are bound by memory: only supernodes of up to four columns are merged, which
         for (int k = 0; k < 3; ++k) // halves the factorisation and stores no zeros that a solve would notice
             common->nrelax[k] = k == 0 ? 4 : 0, common->zrelax[k] = 0;
-    cholmod_sparse a = view(matrix);
+    cholmod_sparse a = ax_cholmod_view(matrix);
     factor->factor = cholmod_analyze_p(&a, (int*)order, NULL, 0, common);
     assert(factor->factor);
     factor->kind = kind;
@@ -103,7 +88,7 @@ void ax_cholesky_free(ax_cholesky* factor)
 bool ax_cholesky_factor(ax_cholesky* factor, const ax_sparse* matrix)
 {
     assert((size_t)matrix->n == factor->factor->n);
-    cholmod_sparse a = view(matrix);
+    cholmod_sparse a = ax_cholmod_view(matrix);
     hold_to_one_thread();
     cholmod_factorize(&a, factor->factor, &factor->common);
     ++factor->counters.factorisations;

@@ -3,9 +3,9 @@
 #include "linalg/order.h"
 
 #include "base/vec.h"
+#include "linalg/cholmod_view.h"
 
 #include <assert.h>
-#include <cholmod.h>
 #include <stdlib.h>
 
 enum { LEAF = 100 };
@@ -191,18 +191,7 @@ void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], int* o
     cholmod_common common;
     cholmod_start(&common);
     common.print = 0;
-    cholmod_sparse a = {.nrow = (size_t)n,
-                        .ncol = (size_t)n,
-                        .nzmax = (size_t)matrix->start[n],
-                        .p = matrix->start,
-                        .i = matrix->row,
-                        .x = matrix->value,
-                        .stype = -1,
-                        .itype = CHOLMOD_INT,
-                        .xtype = CHOLMOD_REAL,
-                        .dtype = CHOLMOD_DOUBLE,
-                        .sorted = 1,
-                        .packed = 1};
+    cholmod_sparse a = ax_cholmod_view(matrix);
     int sound = cholmod_camd(&a, NULL, 0, d.set, order, &common);
     cholmod_finish(&common);
     assert(sound);

@@ -90,7 +90,8 @@ static inline v4 load(const ax_vec4* x)
 FORWARD(1)
 FORWARD(2)
 FORWARD(3)
-FORWARD(4) BACKWARD(1) BACKWARD(2) BACKWARD(3) BACKWARD(4)
+FORWARD(4)
+BACKWARD(1) BACKWARD(2) BACKWARD(3) BACKWARD(4)
 
     static void forward(const ax_panels* s, const panel* p)
 {
