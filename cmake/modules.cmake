@@ -3,15 +3,10 @@
 function(ax_module name)
   cmake_parse_arguments(M "" "" "DEPENDS;LIBRARIES;SOURCES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.c)
-  if(NOT sources)
-    return() # SCAFFOLD: module not written yet
-  endif()
   add_library(ax_${name} STATIC ${sources} ${M_SOURCES})
   target_include_directories(ax_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   foreach(module IN LISTS M_DEPENDS)
-    if(TARGET ax_${module}) # SCAFFOLD
-      target_link_libraries(ax_${name} PUBLIC ax_${module})
-    endif()
+    target_link_libraries(ax_${name} PUBLIC ax_${module})
   endforeach()
   target_link_libraries(ax_${name} PUBLIC ${M_LIBRARIES})
 endfunction()
