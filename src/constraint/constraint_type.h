@@ -1,12 +1,12 @@
 // A constraint type: one file in src/constraint/types, found by the build, named by its file.
 //
-// A constraint sees rows y = A x of the points it binds and returns the nearest rows p that satisfy it (Bouaziz et al. 2012,
-// Shape-Up; 2014, Projective Dynamics). Which rows, is one of a few patterns below, so the solver's matrix depends on the
-// pattern and the weight alone and never on a parameter: changing a length, a target or a curve factorises nothing. Rows are in
-// absolute lengths for the same reason.
+// A constraint sees rows y = A x of the points it binds and returns the nearest rows p that satisfy it (Bouaziz et al.
+// 2012, Shape-Up; 2014, Projective Dynamics). Which rows, is one of a few patterns below, so the solver's matrix
+// depends on the pattern and the weight alone and never on a parameter: changing a length, a target or a curve
+// factorises nothing. Rows are in absolute lengths for the same reason.
 //
-// AX_W constraints of one type and one number of points are projected side by side, structure of arrays: [row][x, y, z][lane].
-// A type is pure arithmetic on lanes: no allocation, no state, no lane sees another, finite rows for every finite input up to
+// AX_W constraints of one type and one number of points are projected side by side: [row][x, y, z][lane]. A type is
+// pure arithmetic on lanes: no allocation, no state, no lane sees another, finite rows for every finite input up to
 // AX_HUGE in size (beyond it squares and cubes overflow).
 #pragma once
 
@@ -22,23 +22,24 @@ enum { AX_W = 8, AX_MOST_POINTS = 1024 };
 typedef double ax_lane[AX_W];
 typedef ax_lane ax_lane3[3]; // x, y, z of one row, AX_W constraints side by side
 
-// In ROWS_EDGES and ROWS_SUM a point may stand in several places of one constraint.
+// A point may stand in several places of one constraint.
 typedef enum ax_row_pattern {
-    AX_ROWS_POINTS, // n rows: the points themselves
-    AX_ROWS_CENTRED, // n rows: the points minus their mean (the constraint does not care where it is); p has mean 0 if y has
-    AX_ROWS_EDGES, // n / 2 rows: x1 - x0, x3 - x2, ...
-    AX_ROWS_ARMS,  // n - 1 rows: x1 - x0, x2 - x0, ...
-    AX_ROWS_SUM,   // 1 row: the sum of coefficient(n, k) x_k
+    AX_ROWS_POINTS,  // n rows: the points themselves
+    AX_ROWS_CENTRED, // n rows: the points minus their mean, for what does not care where it is; p has mean 0 if y has
+    AX_ROWS_EDGES,   // n / 2 rows: x1 - x0, x3 - x2, ...
+    AX_ROWS_ARMS,    // n - 1 rows: x1 - x0, x2 - x0, ...
+    AX_ROWS_SUM,     // 1 row: the sum of coefficient(n, k) x_k
 } ax_row_pattern;
 
-// What must hold for every instance of a type with its parameters left alone; the contract test checks it. With lengths, points
-// and directions among the parameters moved along, every type follows every motion of space (of the plane z = 0 if `flat`).
+// What must hold for every instance of a type with its parameters left alone; the contract test checks it. With
+// lengths, points and directions among the parameters moved along, every type follows every motion of space (of the
+// plane z = 0 if `flat`).
 enum { AX_SYMMETRY_TRANSLATION = 1, AX_SYMMETRY_ROTATION = 2, AX_SYMMETRY_SCALE = 4 };
 
-// One parameter of a type. `lanes` doubles per constraint starting at lane `offset` of its block.
+// One parameter of a type: `lanes` doubles per constraint starting at lane `offset` of its block. Units: "1", "length",
+// "area", "rad", "point" (3 lanes) and "direction" (3 lanes, of any length).
 typedef struct ax_parameter {
-    const char *name, *unit,
-        *doc; // unit: "1", "length", "area", "rad", "point" (3 lanes) or "direction" (3 lanes, any length)
+    const char *name, *unit, *doc;
     double standard, least, most; // default and range of each lane; the default direction is +z
     int offset, lanes;
 } ax_parameter;
@@ -54,17 +55,16 @@ typedef struct ax_constraint_type {
     ax_row_pattern pattern;
     int least_points, most_points;
     int symmetry;
-    bool flat; // lives in the plane z = 0: reads x and y, returns z = 0
-    bool
-        approximate; // p satisfies the constraint, and y stays if it does, but p is not the very nearest: `doc` says what it is
+    bool flat;        // lives in the plane z = 0: reads x and y, returns z = 0
+    bool approximate; // p is admissible, and y stays if it is, but p is only nearly the nearest; `doc` says how
     bool needs_place; // project() asks the group's geometry
     int lanes; // per block of AX_W constraints: parameter k of constraint l is block[k][l], prepared lanes after them
     const ax_parameter* parameters;
     int parameter_count;
     double (*coefficient)(int points, int point); // AX_ROWS_SUM
-    // Fills the parameters that describe a rest shape from the points at rest, all lanes (NULL: nothing to learn from them).
+    // Fills the parameters that describe a rest shape from the points at rest, all lanes (NULL: there are none).
     void (*rest)(ax_lane* restrict block, int points, const ax_lane3* restrict x);
-    // Derives the prepared lanes from the parameters, all lanes; due after any parameter has changed (NULL: there are none).
+    // Derives the prepared lanes from the parameters, all lanes; due after any of them has changed (NULL: there are none).
     void (*prepare)(ax_lane* restrict block, int points);
     // p = nearest admissible rows to y. `place` is the group's geometry, NULL for types without one.
     void (*project)(const ax_lane* restrict block, const ax_place* place, int points, const ax_lane3* restrict y,

@@ -1,5 +1,5 @@
-// edge_length: keeps the length of an edge between `lo` and `hi` times its rest length. lo = hi = 1 is an inextensible linkage
-// edge; lo < 1 lets it buckle.
+// edge_length: keeps the length of an edge between `lo` and `hi` times its rest length. lo = hi = 1 is an inextensible
+// linkage edge; lo < 1 lets it buckle.
 #include "constraint/constraint_type.h"
 
 enum { LO, HI, LENGTH, LANES };

@@ -1,0 +1,433 @@
+// Nearest points on curves.
+// Ellipse: Eberly, Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid (2013), with Newton in place
+// of bisection. Cubic pieces: Schneider, Solving the Nearest-Point-on-Curve Problem (Graphics Gems, 1990): (B(t) -
+// x).B'(t) has degree five; in Bernstein form its sign changes bound its roots, so halving isolates every one of them.
+// Sampling and descent miss the nearest one where the curve winds round x. Pieces are found through a tree of boxes
+// over their order along the curve.
+#include "constraint/place.h"
+
+#include "ax/base.h"
+#include "constraint/eigen3.h"
+
+#include <assert.h>
+
+enum { DEEPEST = 48 };
+
+typedef enum curve_kind { LINE, ELLIPSE, POLYLINE, SPLINE } curve_kind;
+
+typedef struct bezier {
+    double b[4][3]; // Bezier points
+} bezier;
+
+typedef struct bounds {
+    double lo[3], hi[3];
+} bounds;
+
+struct ax_curve {
+    curve_kind kind;
+    double point[3], u[3], v[3]; // line: origin, direction; ellipse: centre, unit semi-axes
+    double a, b;                 // ellipse: their lengths
+    bezier* pieces;
+    bounds* boxes; // of a range of pieces, then of its first half, then of its second: 2 count - 1
+    int count;
+    bool closed;
+};
+
+static ax_curve* make(curve_kind kind)
+{
+    ax_curve* curve = AX_NEW0(ax_curve, 1);
+    curve->kind = kind;
+    return curve;
+}
+
+static void copy3(const double from[3], double to[3])
+{
+    to[0] = from[0], to[1] = from[1], to[2] = from[2];
+}
+
+// out = a + t (b - a)
+static void between(const double a[3], const double b[3], double t, double out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = (1 - t) * a[i] + t * b[i];
+}
+
+ax_curve* ax_curve_line(const double point[3], const double direction[3])
+{
+    ax_curve* curve = make(LINE);
+    double length = ax_norm3(direction);
+    copy3(point, curve->point);
+    for (int i = 0; i < 3; ++i)
+        curve->u[i] = length > 0 ? direction[i] / length : 0;
+    return curve;
+}
+
+ax_curve* ax_curve_ellipse(const double centre[3], const double a[3], const double b[3])
+{
+    ax_curve* curve = make(ELLIPSE);
+    double r[3];
+    copy3(centre, curve->point);
+    ax_frame(a, b, curve->u, curve->v, r);
+    curve->a = r[0], curve->b = r[2];
+    return curve;
+}
+
+ax_curve* ax_curve_circle(const double centre[3], const double normal[3], double radius)
+{
+    double n[3], u[3], v[3], length = ax_norm3(normal);
+    assert(radius >= 0);
+    for (int i = 0; i < 3; ++i)
+        n[i] = length > 0 ? normal[i] / length : i == 2;
+    ax_perpendicular(n, u, v);
+    ax_curve* curve = make(ELLIPSE);
+    copy3(centre, curve->point), copy3(u, curve->u), copy3(v, curve->v);
+    curve->a = curve->b = radius;
+    return curve;
+}
+
+static void make_boxes(ax_curve* curve, int first, int count, int node)
+{
+    bounds* box = &curve->boxes[node];
+    for (int i = 0; i < 3; ++i) {
+        box->lo[i] = INFINITY, box->hi[i] = -INFINITY;
+        for (int k = 4 * first; k < 4 * (first + count); ++k) {
+            double x = curve->pieces[k / 4].b[k % 4][i];
+            box->lo[i] = fmin(box->lo[i], x), box->hi[i] = fmax(box->hi[i], x);
+        }
+    }
+    if (count > 1) {
+        int half = count / 2;
+        make_boxes(curve, first, half, node + 1);
+        make_boxes(curve, first + half, count - half, node + 2 * half);
+    }
+}
+
+// Distinct neighbours among the points, at least one.
+static int distinct(const double (*points)[3], int count, bool closed, double (*out)[3])
+{
+    int n = 0;
+    for (int k = 0; k < count; ++k)
+        if (n == 0 || ax_distance3(points[k], out[n - 1]) > 0)
+            copy3(points[k], out[n++]);
+    while (closed && n > 1 && !(ax_distance3(out[n - 1], out[0]) > 0))
+        --n;
+    return n;
+}
+
+// Knots a square root of the distance apart: derivative at b, for points a, b, c, in units of the span from b to c (or
+// a to b).
+static void tangent(const double a[3], const double b[3], const double c[3], double span, double out[3])
+{
+    double s = sqrt(ax_distance3(a, b)), t = sqrt(ax_distance3(b, c));
+    for (int i = 0; i < 3; ++i)
+        out[i] = span * ((b[i] - a[i]) / s - (c[i] - a[i]) / (s + t) + (c[i] - b[i]) / t);
+}
+
+static ax_curve* make_pieces(curve_kind kind, const double (*points)[3], int count, bool closed)
+{
+    assert(count >= 1);
+    double(*p)[3] = ax_alloc((size_t)count, sizeof *p);
+    int n = distinct(points, count, closed, p);
+    ax_curve* curve = make(kind);
+    curve->closed = closed = closed && n > 1;
+    curve->count = n == 1 ? 1 : n - !closed;
+    curve->pieces = AX_NEW0(bezier, curve->count);
+    for (int k = 0; k < curve->count; ++k) {
+        const double *b = p[k], *c = p[(k + 1) % n];
+        double(*at)[3] = curve->pieces[k].b;
+        copy3(b, at[0]), copy3(c, at[3]);
+        between(b, c, 1.0 / 3, at[1]), between(b, c, 2.0 / 3, at[2]);
+        if (kind == SPLINE && n > 2) {
+            // an open end has no neighbour beyond: the chord itself would make a kink of the curvature, its mirror
+            // image does not
+            double before[3], after[3], m[3], span = sqrt(ax_distance3(b, c));
+            for (int i = 0; i < 3; ++i) {
+                before[i] = closed || k > 0 ? p[(k + n - 1) % n][i] : 2 * b[i] - c[i];
+                after[i] = closed || k + 2 < n ? p[(k + 2) % n][i] : 2 * c[i] - b[i];
+            }
+            tangent(before, b, c, span, m);
+            for (int i = 0; i < 3; ++i)
+                at[1][i] = b[i] + m[i] / 3;
+            tangent(b, c, after, span, m);
+            for (int i = 0; i < 3; ++i)
+                at[2][i] = c[i] - m[i] / 3;
+        }
+    }
+    ax_free(p);
+    curve->boxes = AX_NEW(bounds, 2 * curve->count - 1);
+    make_boxes(curve, 0, curve->count, 0);
+    return curve;
+}
+
+ax_curve* ax_curve_polyline(const double (*points)[3], int count, bool closed)
+{
+    return make_pieces(POLYLINE, points, count, closed);
+}
+
+ax_curve* ax_curve_spline(const double (*points)[3], int count, bool closed)
+{
+    return make_pieces(SPLINE, points, count, closed);
+}
+
+void ax_curve_free(ax_curve* curve)
+{
+    if (curve) {
+        ax_free(curve->pieces);
+        ax_free(curve->boxes);
+        ax_free(curve);
+    }
+}
+
+// Nearest point of the ellipse (x/a)^2 + (y/b)^2 = 1, a >= b > 0, to x, y >= 0.
+static void ellipse_nearest(double a, double b, double x, double y, double* u, double* v)
+{
+    // the nearest point is (x r / (s + r - 1), y / s) with r = (a / b)^2 and s > 0 the root of
+    // G(s) = (n / (s + r - 1))^2 + (z / s)^2 - 1, convex and falling
+    double r = (a / b) * (a / b), more = (a / b - 1) * (a / b + 1), n = r * x / a, z = y / b;
+    if (y > 0) {
+        // each term alone is at most 1: a start on the left of the root, from where Newton never passes it
+        double s = fmax(z, n - more);
+        for (int step = 0; step < 200; ++step) {
+            double p = n / (s + more), q = z / s, g = p * p + q * q - 1;
+            double next = s + 0.5 * g / (p * p / (s + more) + q * q / s);
+            if (!(next > s))
+                break;
+            s = next;
+        }
+        *u = x * r / (s + more), *v = y / s;
+    } else if (a * x < (a - b) * (a + b)) { // between the centres of curvature of the long axis: off the axis
+        double c = a * x / ((a - b) * (a + b));
+        *u = a * c, *v = b * sqrt((1 - c) * (1 + c));
+    } else {
+        *u = a, *v = 0;
+    }
+}
+
+static double nearest_on_ellipse(const ax_curve* curve, const double x[3], double out[3])
+{
+    double d[3], a = curve->a, b = curve->b, longer = fmax(a, b), shorter = fmin(a, b), c,
+                 s; // cosine and sine of the angle
+    ax_sub3(x, curve->point, d);
+    double p = ax_dot3(d, curve->u), q = ax_dot3(d, curve->v);
+    if (a == b) {
+        double length = sqrt(p * p + q * q);
+        c = length > 0 ? p / length : 1, s = length > 0 ? q / length : 0;
+    } else {
+        double e = fabs(a > b ? p : q), f = fabs(a > b ? q : p), u, v;
+        if (shorter > 1e-12 * longer) {
+            ellipse_nearest(longer, shorter, e, f, &u, &v);
+            u /= longer, v /= shorter;
+        } else { // as good as a segment
+            u = fmin(e / longer, 1), v = sqrt((1 - u) * (1 + u));
+        }
+        c = copysign(a > b ? u : v, p), s = copysign(a > b ? v : u, q);
+    }
+    for (int i = 0; i < 3; ++i)
+        out[i] = curve->point[i] + a * c * curve->u[i] + b * s * curve->v[i];
+    double turn = atan2(s, c) / (2 * AX_PI);
+    return turn < 0 ? turn + 1 : turn;
+}
+
+typedef struct query {
+    const ax_curve* curve;
+    const double* x;
+    double square, t; // the best so far: squared distance, parameter
+    double out[3];
+} query;
+
+static void piece_point(const bezier* piece, double t, double out[3])
+{
+    double c[4][3];
+    for (int k = 0; k < 3; ++k)
+        between(piece->b[k], piece->b[k + 1], t, c[k]);
+    for (int n = 2; n > 0; --n)
+        for (int k = 0; k < n; ++k)
+            between(c[k], c[k + 1], t, c[k]);
+    copy3(c[0], out);
+}
+
+// p, at t of piece `index`, is the nearest if it is nearer than what was.
+static void offer_point(query* best, int index, double t, const double p[3])
+{
+    double d[3];
+    ax_sub3(p, best->x, d);
+    double square = ax_dot3(d, d);
+    if (square < best->square) {
+        best->square = square, best->t = index + t;
+        copy3(p, best->out);
+    }
+}
+
+static void offer(query* best, int index, double t)
+{
+    double p[3];
+    piece_point(&best->curve->pieces[index], t, p);
+    offer_point(best, index, t, p);
+}
+
+// Bernstein coefficients of the two halves of a quintic (de Casteljau).
+static void halve(const double w[6], double left[6], double right[6])
+{
+    double c[6];
+    for (int k = 0; k < 6; ++k)
+        c[k] = w[k];
+    for (int n = 5; n >= 0; --n) {
+        left[5 - n] = c[0], right[n] = c[n];
+        for (int k = 0; k < n; ++k)
+            c[k] = 0.5 * (c[k] + c[k + 1]);
+    }
+}
+
+// The one root of a quintic in (0, 1) that rises from negative to positive there: Newton between bounds.
+static double quintic_root(const double w[6])
+{
+    // powers of t by differences of the coefficients
+    static const double binomial[6] = {1, 5, 10, 10, 5, 1};
+    double c[6], lo = 0, hi = 1, t = w[0] / (w[0] - w[5]);
+    for (int k = 0; k < 6; ++k)
+        c[k] = w[k];
+    for (int n = 1; n < 6; ++n)
+        for (int k = 5; k >= n; --k)
+            c[k] -= c[k - 1];
+    for (int k = 0; k < 6; ++k)
+        c[k] *= binomial[k];
+    for (int step = 0; step < 64; ++step) {
+        double value = c[5], slope = 0;
+        for (int k = 4; k >= 0; --k)
+            slope = slope * t + value, value = value * t + c[k];
+        if (value < 0)
+            lo = t;
+        else
+            hi = t;
+        double next = t - value / slope;
+        if (!(next > lo && next < hi))
+            next = 0.5 * (lo + hi);
+        if (fabs(next - t) <= 1e-16)
+            break;
+        t = next;
+    }
+    return t;
+}
+
+// Offers every root of the quintic, which stands for [lo, lo + size] of a piece.
+static void offer_roots(query* best, int index, const double w[6], double lo, double size, int depth)
+{
+    int changes = 0;
+    double last = 0;
+    for (int k = 0; k < 6; ++k)
+        if (w[k] != 0) {
+            changes += last * w[k] < 0;
+            last = w[k] < 0 ? -1 : 1;
+        }
+    if (changes == 0) {
+        return; // a root at an end is offered as the end or by the other half
+    } else if (changes == 1 && w[0] != 0 && w[5] != 0) {
+        if (w[0] < 0) // the other way the distance has a maximum
+            offer(best, index, lo + size * quintic_root(w));
+    } else if (depth == DEEPEST) {
+        offer(best, index, lo + 0.5 * size);
+    } else {
+        double left[6], right[6];
+        halve(w, left, right);
+        offer_roots(best, index, left, lo, 0.5 * size, depth + 1);
+        if (right[0] == 0)
+            offer(best, index, lo + 0.5 * size);
+        offer_roots(best, index, right, lo + 0.5 * size, 0.5 * size, depth + 1);
+    }
+}
+
+static void search_piece(query* best, int index)
+{
+    const bezier* piece = &best->curve->pieces[index];
+    offer_point(best, index, 0, piece->b[0]);
+    offer_point(best, index, 1, piece->b[3]);
+    double d[4][3], e[3][3];
+    for (int k = 0; k < 4; ++k)
+        ax_sub3(piece->b[k], best->x, d[k]);
+    for (int k = 0; k < 3; ++k)
+        ax_sub3(piece->b[k + 1], piece->b[k], e[k]);
+    if (best->curve->kind == POLYLINE) {
+        double chord[3];
+        ax_sub3(piece->b[3], piece->b[0], chord);
+        double square = ax_dot3(chord, chord), t = -ax_dot3(d[0], chord) / square;
+        if (t > 0 && t < 1) // not so for a point, without a length
+            offer(best, index, t);
+    } else {
+        // product of the Bernstein forms of B - x and B' / 3
+        static const double cubic[4] = {1, 3, 3, 1}, square[3] = {1, 2, 1}, quintic[6] = {1, 5, 10, 10, 5, 1};
+        double w[6] = {0};
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 3; ++j)
+                w[i + j] += cubic[i] * square[j] / quintic[i + j] * ax_dot3(d[i], e[j]);
+        offer_roots(best, index, w, 0, 1, 0);
+    }
+}
+
+static double box_square(const bounds* box, const double x[3])
+{
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+        double d = fmax(0, fmax(box->lo[i] - x[i], x[i] - box->hi[i]));
+        sum += d * d;
+    }
+    return sum;
+}
+
+static void search_range(query* best, int first, int count, int node)
+{
+    if (count == 1) {
+        search_piece(best, first);
+        return;
+    }
+    int half = count / 2, left = node + 1, right = node + 2 * half;
+    double a = box_square(&best->curve->boxes[left], best->x), b = box_square(&best->curve->boxes[right], best->x);
+    for (int side = 0; side < 2; ++side) { // the nearer half first
+        bool second = (b < a) != side;
+        if ((second ? b : a) < best->square)
+            search_range(best, second ? first + half : first, second ? count - half : half, second ? right : left);
+    }
+}
+
+double ax_curve_nearest(const ax_curve* curve, const double x[3], double out[3])
+{
+    if (curve->kind == LINE) {
+        double d[3];
+        ax_sub3(x, curve->point, d);
+        double t = ax_dot3(d, curve->u);
+        for (int i = 0; i < 3; ++i)
+            out[i] = curve->point[i] + t * curve->u[i];
+        return t;
+    }
+    if (curve->kind == ELLIPSE)
+        return nearest_on_ellipse(curve, x, out);
+    query best = {.curve = curve, .x = x, .square = INFINITY};
+    search_range(&best, 0, curve->count, 0);
+    copy3(best.out, out);
+    return curve->closed && best.t >= curve->count ? 0 : best.t;
+}
+
+void ax_curve_point(const ax_curve* curve, double t, double out[3])
+{
+    if (curve->kind == LINE || curve->kind == ELLIPSE) {
+        double x = t, y = 0;
+        if (curve->kind == ELLIPSE)
+            x = curve->a * cos(2 * AX_PI * t), y = curve->b * sin(2 * AX_PI * t);
+        for (int i = 0; i < 3; ++i)
+            out[i] = curve->point[i] + x * curve->u[i] + y * curve->v[i];
+        return;
+    }
+    double n = curve->count;
+    t = curve->closed ? t - n * floor(t / n) : ax_clamp(t, 0, n);
+    int index = t < n ? (int)t : curve->count - 1;
+    piece_point(&curve->pieces[index], t - index, out);
+}
+
+static void place_nearest(const void* geometry, const double x[3], double out[3])
+{
+    ax_curve_nearest(geometry, x, out);
+}
+
+ax_place ax_curve_place(const ax_curve* curve)
+{
+    return (ax_place){place_nearest, curve};
+}
