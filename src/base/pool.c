@@ -1,5 +1,6 @@
 // Loops here last tens of microseconds, so waiting threads spin for about as long before they sleep: waking a sleeping thread
-// costs more than the loop.
+// costs more than the loop. Indices are claimed one by one, and a loop ends when all threads that entered it have left: one
+// that the system has not scheduled in time enters no more and holds nobody up, so a busy machine costs its share and no more.
 #include "base/pool.h"
 
 #include "ax/base.h"
@@ -10,13 +11,15 @@
 
 enum { SPINS = 20000, MOST_THREADS = 64 };
 
+static const unsigned long long CLOSED = 1ull << 31, INSIDE = (1ull << 31) - 1;
+
 struct ax_pool {
     int threads;
     pthread_t thread[MOST_THREADS];
     pthread_mutex_t lock;
     pthread_cond_t wake;
-    atomic_uint round; // even while idle; a new round starts a loop
-    atomic_int sleeping, next, left;
+    atomic_ullong gate; // number of the loop << 32 | CLOSED once its indices are gone | threads inside
+    atomic_int sleeping, next;
     atomic_bool stop;
     void (*task)(void*, int);
     void* context;
@@ -36,26 +39,36 @@ static void work(ax_pool* pool)
         pool->task(pool->context, index);
 }
 
+static unsigned long long loop_of(unsigned long long gate)
+{
+    return gate >> 32;
+}
+
 static void* run(void* argument)
 {
     ax_pool* pool = argument;
-    unsigned seen = 0;
+    unsigned long long seen = 0, gate;
     while (true) {
-        for (int spin = 0; atomic_load(&pool->round) == seen && spin < SPINS; ++spin)
+        for (int spin = 0; loop_of(gate = atomic_load(&pool->gate)) == seen && spin < SPINS; ++spin)
             pause_briefly();
-        if (atomic_load(&pool->round) == seen) {
+        if (loop_of(gate) == seen) {
             pthread_mutex_lock(&pool->lock);
             atomic_fetch_add(&pool->sleeping, 1);
-            while (atomic_load(&pool->round) == seen)
+            while (loop_of(gate = atomic_load(&pool->gate)) == seen)
                 pthread_cond_wait(&pool->wake, &pool->lock);
             atomic_fetch_sub(&pool->sleeping, 1);
             pthread_mutex_unlock(&pool->lock);
         }
-        seen = atomic_load(&pool->round);
         if (atomic_load(&pool->stop))
             return NULL;
+        // enter while the loop is open
+        while (!(gate & CLOSED) && !atomic_compare_exchange_weak(&pool->gate, &gate, gate + 1))
+            ;
+        seen = loop_of(gate);
+        if (gate & CLOSED)
+            continue;
         work(pool);
-        atomic_fetch_sub(&pool->left, 1);
+        atomic_fetch_sub(&pool->gate, 1);
     }
 }
 
@@ -74,9 +87,10 @@ ax_pool* ax_pool_make(int threads)
     return pool;
 }
 
-static void start_round(ax_pool* pool)
+// Opens the next loop; nobody is inside the one before.
+static void open_gate(ax_pool* pool)
 {
-    atomic_fetch_add(&pool->round, 1);
+    atomic_store(&pool->gate, (loop_of(atomic_load(&pool->gate)) + 1) << 32);
     if (atomic_load(&pool->sleeping)) {
         pthread_mutex_lock(&pool->lock);
         pthread_cond_broadcast(&pool->wake);
@@ -89,10 +103,7 @@ void ax_pool_free(ax_pool* pool)
     if (!pool)
         return;
     atomic_store(&pool->stop, true);
-    pthread_mutex_lock(&pool->lock);
-    atomic_fetch_add(&pool->round, 1);
-    pthread_cond_broadcast(&pool->wake);
-    pthread_mutex_unlock(&pool->lock);
+    open_gate(pool);
     for (int k = 1; k < pool->threads; ++k)
         pthread_join(pool->thread[k], NULL);
     pthread_mutex_destroy(&pool->lock);
@@ -115,10 +126,10 @@ void ax_pool_run(ax_pool* pool, void (*task)(void* context, int index), void* co
     pool->task = task;
     pool->context = context;
     pool->count = count;
-    atomic_store(&pool->left, pool->threads - 1);
     atomic_store(&pool->next, 0);
-    start_round(pool);
+    open_gate(pool);
     work(pool);
-    while (atomic_load(&pool->left)) // the others are at most one index behind
+    atomic_fetch_or(&pool->gate, CLOSED);
+    while (atomic_load(&pool->gate) & INSIDE) // others are at most one index behind
         pause_briefly();
 }

@@ -1,0 +1,244 @@
+// The projective solver: prices of changes, bits, energy, and small problems with known answers.
+#include "solver/solver.h"
+
+#include "base/random.h"
+#include "linalg/order.h"
+#include "support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// A square grid of side x side points with its edges, corners held.
+typedef struct grid {
+    int side, points, edges;
+    double (*place)[3];
+    int (*edge)[2];
+} grid;
+
+static grid make_grid(int side)
+{
+    grid g = {.side = side, .points = side * side};
+    g.place = ax_alloc((size_t)g.points, sizeof *g.place);
+    g.edge = ax_alloc((size_t)(4 * g.points), sizeof *g.edge);
+    ax_random random = {3};
+    for (int v = 0; v < g.points; ++v) {
+        g.place[v][0] = v % side, g.place[v][1] = v / side;
+        g.place[v][2] = ax_random_uniform(&random, -0.1, 0.1);
+        int next[3] = {v % side + 1 < side ? v + 1 : -1, v + side, v % side + 1 < side ? v + side + 1 : -1};
+        for (int k = 0; k < 3; ++k)
+            if (next[k] >= 0 && next[k] < g.points)
+                g.edge[g.edges][0] = v, g.edge[g.edges][1] = next[k], ++g.edges;
+    }
+    return g;
+}
+
+static void free_grid(grid* g)
+{
+    ax_free(g->place);
+    ax_free(g->edge);
+}
+
+static int length_lane(void)
+{
+    return ax_parameter_find(ax_constraint_find("edge_length"), "length")->offset;
+}
+
+// Edges 10 % longer than they are, corners held.
+static ax_solver* grow(const grid* g, ax_pool* pool)
+{
+    ax_solver* s = ax_solver_make(g->points, (const double(*)[3])g->place, pool);
+    int corners[4] = {0, g->side - 1, g->points - g->side, g->points - 1};
+    int edges = ax_solver_add(s, ax_constraint_find("edge_length"), 2, g->edges, g->edge[0], 1, NULL);
+    ax_solver_add(s, ax_constraint_find("closeness"), 1, 4, corners, 100, NULL);
+    for (int e = 0; e < g->edges; ++e)
+        ax_solver_set(s, edges, e, length_lane(), 1.1 * ax_solver_get(s, edges, e, length_lane()));
+    return s;
+}
+
+static void each_change_costs_what_it_must(void** state)
+{
+    (void)state;
+    grid g = make_grid(20);
+    ax_solver* s = grow(&g, NULL);
+    assert_true(ax_solver_iterate(s, 5));
+    assert_int_equal(ax_solver_count(s).analyses, 1);
+    assert_int_equal(ax_solver_count(s).factorisations, 1);
+    double(*force)[3] = ax_calloc((size_t)g.points, sizeof *force);
+    for (int e = 0; e < g.edges; ++e)
+        ax_solver_set(s, 0, e, length_lane(), 1.3);
+    force[g.points / 2][2] = 0.1;
+    ax_solver_set_load(s, (const double(*)[3])force);
+    assert_true(ax_solver_iterate(s, 5));
+    assert_int_equal(ax_solver_count(s).factorisations, 1); // lengths and loads are free
+    ax_solver_set_weight(s, 0, 2);
+    assert_true(ax_solver_iterate(s, 5));
+    assert_int_equal(ax_solver_count(s).factorisations, 2);
+    assert_int_equal(ax_solver_count(s).analyses, 1); // a weight keeps the pattern
+    ax_solver_add(s, ax_constraint_find("edge_length"), 2, 1, (int[]){0, g.points - 1}, 1, NULL);
+    assert_true(ax_solver_iterate(s, 5));
+    assert_int_equal(ax_solver_count(s).analyses, 2);
+    ax_free(force);
+    ax_solver_free(s);
+    free_grid(&g);
+}
+
+static void the_steady_state_allocates_nothing(void** state)
+{
+    (void)state;
+    grid g = make_grid(20);
+    ax_solver* s = grow(&g, NULL);
+    assert_true(ax_solver_iterate(s, 2));
+    size_t before = ax_allocation_count();
+    assert_true(ax_solver_iterate(s, 100));
+    ax_solver_set(s, 0, 3, length_lane(), 1.5);
+    assert_true(ax_solver_iterate(s, 10));
+    assert_int_equal(ax_allocation_count(), before);
+    ax_solver_free(s);
+    free_grid(&g);
+}
+
+static void every_number_of_threads_gives_the_same_bits(void** state)
+{
+    (void)state;
+    grid g = make_grid(150);
+    size_t bytes = (size_t)g.points * sizeof *g.place;
+    double(*one)[3] = ax_alloc((size_t)g.points, sizeof *one), (*many)[3] = ax_alloc((size_t)g.points, sizeof *many);
+    for (int threads = 1; threads <= 4; ++threads) {
+        ax_pool* pool = ax_pool_make(threads);
+        ax_solver* s = grow(&g, pool);
+        assert_true(ax_solver_iterate(s, 20));
+        ax_solver_get_places(s, threads == 1 ? one : many);
+        if (threads > 1)
+            assert_memory_equal(one, many, bytes);
+        ax_solver_free(s);
+        ax_pool_free(pool);
+    }
+    ax_free(one);
+    ax_free(many);
+    free_grid(&g);
+}
+
+static void energy_never_rises_in_plain_iterations(void** state)
+{
+    (void)state;
+    grid g = make_grid(12);
+    ax_solver* s = grow(&g, NULL);
+    double before = ax_solver_energy(s);
+    for (int k = 0; k < 200; ++k) {
+        assert_true(ax_solver_iterate(s, 1));
+        double now = ax_solver_energy(s);
+        assert_at_most(now, before * (1 + 1e-12) + 1e-14);
+        before = now;
+    }
+    ax_solver_free(s);
+    free_grid(&g);
+}
+
+// One point on an edge of length 1 hung from a held point: w (|x| - 1)^2 - 2 f |x| is least at |x| = 1 + f / w.
+static void a_loaded_edge_stretches_by_force_over_weight(void** state)
+{
+    (void)state;
+    const double place[2][3] = {{0, 0, 0}, {0, 0, -1}}, force[2][3] = {{0, 0, 0}, {0, 0, -0.3}};
+    ax_solver* s = ax_solver_make(2, place, NULL);
+    ax_solver_add(s, ax_constraint_find("edge_length"), 2, 1, (int[]){0, 1}, 5, NULL);
+    ax_solver_add(s, ax_constraint_find("closeness"), 1, 1, (int[]){0}, 1e9, NULL);
+    ax_solver_set_load(s, force);
+    assert_true(ax_solver_iterate(s, 2000));
+    double x[2][3];
+    ax_solver_get_places(s, x);
+    assert_near(x[1][2], -(1 + 0.3 / 5), 1e-6);
+
+    // with multipliers the edge is rigid
+    ax_solver_use_multipliers(s, true);
+    assert_true(ax_solver_iterate(s, 2000));
+    ax_solver_get_places(s, x);
+    assert_near(x[1][2] - x[0][2], -1, 1e-9);
+    assert_at_most(ax_solver_residual(s, 0), 1e-9);
+    ax_solver_free(s);
+}
+
+// Implicit Euler in free fall: after n steps x = a h^2 n (n + 1) / 2.
+static void a_free_point_falls_as_implicit_euler_says(void** state)
+{
+    (void)state;
+    const double place[1][3] = {{1, 2, 3}};
+    ax_solver* s = ax_solver_make(1, place, NULL);
+    ax_solver_set_dynamics(s, &(ax_dynamics){2, 0.1, 1, {0, 0, -10}});
+    for (int k = 0; k < 25; ++k)
+        assert_true(ax_solver_step(s, 3));
+    double x[1][3];
+    ax_solver_get_places(s, x);
+    assert_near(x[0][0], 1, 1e-12);
+    assert_near(x[0][2], 3 - 10 * 0.01 * 25 * 26 / 2, 1e-9);
+    ax_solver_free(s);
+}
+
+static void a_point_bound_by_nothing_is_reported(void** state)
+{
+    (void)state;
+    const double place[3][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    ax_solver* s = ax_solver_make(3, place, NULL);
+    ax_solver_add(s, ax_constraint_find("closeness"), 1, 2, (int[]){0, 1}, 1, NULL);
+    assert_false(ax_solver_iterate(s, 1));
+    ax_solver_free(s);
+}
+
+// Panels against the residual of the system, on random sparse matrices with and without a parallel top.
+static void panels_solve_what_was_factorised(void** state)
+{
+    (void)state;
+    const int sides[] = {1, 2, 3, 7, 30, 200};
+    for (int t = 0; t < 6; ++t) {
+        grid g = make_grid(sides[t]);
+        ax_entries entries = {0};
+        for (int v = 0; v < g.points; ++v)
+            ax_entries_add(&entries, v, v, 6.5);
+        for (int e = 0; e < g.edges; ++e)
+            ax_entries_add(&entries, g.edge[e][0], g.edge[e][1], -1);
+        ax_sparse matrix = ax_entries_sparse(&entries, g.points);
+        int *order = AX_NEW(int, g.points), *seen = AX_NEW0(int, g.points);
+        ax_order_by_place(&matrix, (const double(*)[3])g.place, order);
+        for (int v = 0; v < g.points; ++v)
+            assert_int_equal(seen[order[v]]++, 0); // a permutation
+        ax_cholesky* factor = ax_cholesky_analyse_ordered(&matrix, AX_FACTOR_PANELS, order);
+        assert_true(ax_cholesky_factor(factor, &matrix));
+        ax_panels* panels = ax_panels_make(factor);
+        ax_vec4* x = ax_alloc_aligned((size_t)g.points, sizeof *x);
+        ax_random random = {9};
+        for (int v = 0; v < g.points; ++v)
+            for (int c = 0; c < 4; ++c)
+                x[v][c] = ax_random_uniform(&random, -1, 1);
+        ax_vec4* b = ax_copy(x, (size_t)g.points, sizeof *b);
+        ax_panels_solve(panels, NULL, x);
+        double *column = AX_NEW(double, g.points), *product = AX_NEW(double, g.points);
+        for (int c = 0; c < 4; ++c) {
+            for (int k = 0; k < g.points; ++k)
+                column[ax_panels_order(panels)[k]] = x[k][c];
+            ax_sparse_multiply(&matrix, column, product, 1);
+            for (int k = 0; k < g.points; ++k)
+                assert_near(product[ax_panels_order(panels)[k]], b[k][c], 1e-12);
+        }
+        void* blocks[] = {order, seen, x, b, column, product};
+        for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+            ax_free(blocks[k]);
+        ax_panels_free(panels);
+        ax_cholesky_free(factor);
+        ax_sparse_free(&matrix);
+        free_grid(&g);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_change_costs_what_it_must),
+        cmocka_unit_test(the_steady_state_allocates_nothing),
+        cmocka_unit_test(every_number_of_threads_gives_the_same_bits),
+        cmocka_unit_test(energy_never_rises_in_plain_iterations),
+        cmocka_unit_test(a_loaded_edge_stretches_by_force_over_weight),
+        cmocka_unit_test(a_free_point_falls_as_implicit_euler_says),
+        cmocka_unit_test(a_point_bound_by_nothing_is_reported),
+        cmocka_unit_test(panels_solve_what_was_factorised),
+    };
+    return cmocka_run_group_tests_name("solver", tests, NULL, NULL);
+}
