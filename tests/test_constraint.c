@@ -703,6 +703,22 @@ static void panels_shrink_to_their_size_where_they_are(void** state)
             assert_near(p[k][i], 0.75 * (x[k][i] - mean[i]), 1e-14);
 }
 
+static void lengths_of_no_triangle_make_a_flat_one(void** state)
+{
+    (void)state;
+    const double x[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    for (int k = 0; k < 3; ++k) { // edge k too long for the others
+        double lengths[3] = {3, 3, 3}, p[3][3];
+        lengths[k] = 10;
+        instance made = make_named("rigid_triangle", 3);
+        set(&made, "lengths", lengths);
+        project_points(&made, x, p);
+        assert_near(distance_between(p[0], p[1]), lengths[2], 1e-14);
+        assert_near(distance_between(p[0], p[2]), lengths[1], 1e-14);
+        assert_near(distance_between(p[1], p[2]), k == 0 ? 6 : 7, 1e-14);
+    }
+}
+
 static void flat_panels_are_never_turned_over(void** state)
 {
     (void)state;
@@ -1114,6 +1130,18 @@ static void arms_of_an_overlapping_mouth_turn_apart(void** state)
     assert_near(atan2(p[0][1], p[0][0]), 5 * degree, 1e-14), assert_near(atan2(p[1][1], p[1][0]), 125 * degree, 1e-14);
 }
 
+static void arms_opposite_to_their_only_angle_turn_there(void** state)
+{
+    (void)state;
+    // both senses are as near: one of them, not none, and not an arm of no length
+    instance made = make_named("mouth_angle", 3);
+    set1(&made, "hi", 0);
+    double p[2][3];
+    project_points(&made, (const double[3][3]){{0, 0, 0}, {2, 0, 0}, {-2, 0, 0}}, p);
+    assert_near(ax_norm3(p[0]), 2, 1e-15), assert_near(ax_norm3(p[1]), 2, 1e-15);
+    assert_near(ax_distance3(p[0], p[1]), 0, 1e-15);
+}
+
 // Unequal arms, all bounds: in range, lengths kept, and no other way of turning them there is nearer.
 static void arms_turn_by_the_least_that_is_needed(void** state)
 {
@@ -1432,6 +1460,7 @@ int main(void)
         cmocka_unit_test(edges_are_clamped_to_their_range),
         cmocka_unit_test(panels_get_the_edges_of_their_template),
         cmocka_unit_test(panels_shrink_to_their_size_where_they_are),
+        cmocka_unit_test(lengths_of_no_triangle_make_a_flat_one),
         cmocka_unit_test(flat_panels_are_never_turned_over),
         cmocka_unit_test(templates_are_learned_from_the_rest_shape),
         cmocka_unit_test(the_equilateral_part_of_a_triangle_is_kept),
@@ -1448,6 +1477,7 @@ int main(void)
         cmocka_unit_test(mirrored_points_meet_halfway),
         cmocka_unit_test(symmetric_points_follow_each_other_round_the_axis),
         cmocka_unit_test(arms_of_an_overlapping_mouth_turn_apart),
+        cmocka_unit_test(arms_opposite_to_their_only_angle_turn_there),
         cmocka_unit_test(arms_turn_by_the_least_that_is_needed),
         cmocka_unit_test(triangles_get_their_area),
         cmocka_unit_test(axes_are_perpendicular_and_sorted),
