@@ -92,7 +92,8 @@ FORWARD(2)
 FORWARD(3)
 FORWARD(4)
 BACKWARD(1)
-BACKWARD(2) BACKWARD(3) BACKWARD(4)
+BACKWARD(2)
+BACKWARD(3) BACKWARD(4)
 
     static void forward(const ax_panels* s, const panel* p)
 {
