@@ -87,13 +87,10 @@ static inline v4 load(const ax_vec4* x)
             *(v4*)(x + p->first + j) = c[j];                                                                           \
         }                                                                                                              \
     }
-FORWARD(1)
-FORWARD(2)
-FORWARD(3)
-FORWARD(4)
-BACKWARD(1)
-BACKWARD(2)
-BACKWARD(3) BACKWARD(4)
+// clang-format off
+FORWARD(1) FORWARD(2) FORWARD(3) FORWARD(4)
+BACKWARD(1) BACKWARD(2) BACKWARD(3) BACKWARD(4)
+    // clang-format on
 
     static void forward(const ax_panels* s, const panel* p)
 {
