@@ -199,6 +199,18 @@ class MainJob(CommandCase):
         self.assertEqual(json.loads(self.succeed("info", document, "--json"))["supports"], len(fewer["supports"]))
 
 
+    def test_shell_that_bulges_down_is_hung_downwards(self):
+        vertices, faces = judge.read_obj(SURFACES / "ellipse_dome.obj")
+        lines = [f"v {x} {y} {-z}\n" for x, y, z in vertices] + [f"f {a} {b} {c}\n" for a, b, c in faces + 1]
+        (self.folder / "bowl.obj").write_text("".join(lines))
+        document = self.folder / "d.auxshell"
+        self.succeed("design", self.folder / "bowl.obj", "-o", document, "--triangles", 300)  # inflated at first
+        self.succeed("simulate", document, "--load", "gravity")
+        info = json.loads(self.succeed("info", document, "--json"))
+        self.assertEqual(info["load"]["direction"], [0, 0, -1])
+        self.assertLess(info["report"]["simulated_rms_over_L"], 0.06)
+
+
 def judge_areas(design):
     flat, triangles = np.array(design["flat"]), np.array(design["triangles"])
     a, b = flat[triangles[:, 1]] - flat[triangles[:, 0]], flat[triangles[:, 2]] - flat[triangles[:, 0]]

@@ -400,9 +400,8 @@ ax_status ax_design_from_target(const ax_mesh* target, const ax_design_options* 
     status = accept_target(&design, options, &screen, ax_progress_within(&slot, progress, 0, 0.2), error);
     design.report.seconds_flatten = ax_seconds() - start;
     if (status == AX_OK) {
-        if (options->load.kind == AX_LOAD_GRAVITY)
-            for (int c = 0; c < 3; ++c)
-                design.load.direction[c] = c == 2 ? screen.gravity_direction : 0;
+        for (int c = 0; c < 3; ++c) // also for a design that is inflated: it may be hung later
+            design.load.direction[c] = c == 2 ? screen.gravity_direction : 0;
         status = solve_states(&design, options, &screen, ax_progress_within(&slot, progress, 0.2, 0.6), error);
     }
     ax_screen_free(&screen);
