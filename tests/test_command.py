@@ -293,7 +293,7 @@ class Trouble(CommandCase):
 
     def test_interrupted_simulation_keeps_the_document(self):
         document = self.folder / "b.auxshell"
-        self.succeed("design", DOME, "-o", document, "--triangles", "1000" if QUICK else "8000")
+        self.succeed("design", DOME, "-o", document, "--triangles", "4000" if QUICK else "8000")
         content = document.read_bytes()
         process = subprocess.Popen([AUXSHELL, "simulate", document, "--load", "gravity"], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE)
