@@ -44,10 +44,8 @@ static void draw_design(const char* folder, const char* name, const ax_mesh* mes
     ax_design_options options = ax_design_options_default();
     options.project = true;
     require(ax_design_from_target(mesh, &options, NULL, &design, &error), &error);
-    static const char* const names[] = {
-        [AX_STATE_FLAT] = "flat", [AX_STATE_DEPLOYED] = "deployed", [AX_STATE_SIMULATED] = "simulated"};
     for (ax_state state = first; state <= AX_STATE_SIMULATED; ++state) {
-        snprintf(path, sizeof path, "%s/%s-%s.png", folder, name, names[state]);
+        snprintf(path, sizeof path, "%s/%s-%s.png", folder, name, ax_state_name(state));
         require(ax_picture_design(&design, state, WIDTH, HEIGHT, path, &error), &error);
     }
     ax_design_free(&design);

@@ -30,9 +30,9 @@ typedef struct arguments {
     angle_choice angle;
 } arguments;
 
-static void defaults(void* arguments_)
+static void defaults(void* given)
 {
-    arguments* a = arguments_;
+    arguments* a = given;
     a->design = ax_design_options_default();
 }
 
@@ -209,13 +209,13 @@ static bool is_design(ax_status status, const ax_design* design)
 static ax_status run(const void* given, ax_error* error)
 {
     const arguments* a = given;
-    ax_design_options options_ = a->design;
-    options_.target.flatten = (ax_flatten_options){.boundary = a->flatten.boundary,
-                                                   .corner_count = a->flatten.corner_count,
-                                                   .corner_angles = a->flatten.corner_angles};
-    options_.angle_given = a->angle.given && !a->angle.edge;
-    options_.align_to_edge = a->angle.edge;
-    options_.angle = a->angle.degrees;
+    ax_design_options wanted = a->design;
+    wanted.target.flatten = (ax_flatten_options){.boundary = a->flatten.boundary,
+                                                 .corner_count = a->flatten.corner_count,
+                                                 .corner_angles = a->flatten.corner_angles};
+    wanted.angle_given = a->angle.given && !a->angle.edge;
+    wanted.align_to_edge = a->angle.edge;
+    wanted.angle = a->angle.degrees;
 
     ax_mesh mesh = {0};
     ax_mesh_repairs repairs;
@@ -224,7 +224,7 @@ static ax_status run(const void* given, ax_error* error)
     if (status == AX_OK)
         status = ax_mesh_read(a->target, NULL, &mesh, &repairs, error);
     if (status == AX_OK)
-        status = ax_design_from_target(&mesh, &options_, progress_reporter(), &design, error);
+        status = ax_design_from_target(&mesh, &wanted, progress_reporter(), &design, error);
     progress_end();
     if (progress_cancelled())
         status = AX_CANCELLED;

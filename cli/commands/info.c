@@ -29,11 +29,6 @@ static const command_option options[] = {
      .offset = offsetof(arguments, png)},
 };
 
-static const char* const border_names[] = {
-    [AX_BORDER_EQUILATERAL] = "equilateral", [AX_BORDER_RELEASED] = "released", [AX_BORDER_INSIDE] = "inside"};
-static const char* const load_names[] = {
-    [AX_LOAD_NONE] = "none", [AX_LOAD_GRAVITY] = "gravity", [AX_LOAD_INFLATION] = "inflation"};
-
 static int count_supports(const ax_design* d)
 {
     int count = 0;
@@ -48,7 +43,7 @@ static void print_design(const char* path, const ax_design* d)
     load_words(&d->load, load, sizeof load);
     printf("%s\n", path);
     printf("  Linkage         %d triangles, %d hinges, %d holes, border %s; lengths in %s\n", d->linkage.triangle_count,
-           d->linkage.hinge_count, d->linkage.hole_count, border_names[d->border], ax_unit_name(d->unit));
+           d->linkage.hinge_count, d->linkage.hole_count, ax_border_name(d->border), ax_unit_name(d->unit));
     printf("  Target          %d vertices, %d faces; mended: ", d->target.vertex_count, d->target.face_count);
     repairs_print(&d->repairs, stdout);
     if (d->projected)
@@ -62,7 +57,7 @@ static void print_design(const char* path, const ax_design* d)
 static json_t* design_json(const ax_design* d)
 {
     json_t* load =
-        json_pack("{s:s, s:o, s:o, s:o}", "kind", load_names[d->load.kind], "direction",
+        json_pack("{s:s, s:o, s:o, s:o}", "kind", ax_load_kind_name(d->load.kind), "direction",
                   d->load.kind == AX_LOAD_GRAVITY ? json_numbers(d->load.direction, 3) : json_null(), "pressure",
                   d->load.kind == AX_LOAD_INFLATION ? json_number(d->load.pressure) : json_null(), "density",
                   d->load.kind == AX_LOAD_GRAVITY ? json_number(d->load.density) : json_null());
@@ -76,24 +71,21 @@ static json_t* design_json(const ax_design* d)
     return json_pack("{s:s, s:i, s:i, s:i, s:i, s:i, s:s, s:o, s:o, s:o, s:o, s:o, s:o}", "units",
                      ax_unit_name(d->unit), "triangles", d->linkage.triangle_count, "hinges", d->linkage.hinge_count,
                      "holes", d->linkage.hole_count, "openings", d->linkage.opening_count, "supports",
-                     count_supports(d), "border", border_names[d->border], "mouth_min", json_number(d->mouth_min),
+                     count_supports(d), "border", ax_border_name(d->border), "mouth_min", json_number(d->mouth_min),
                      "scale_ratio", json_number(d->scale_ratio), "load", load, "projection", projection, "repairs",
                      repairs_json(&d->repairs), "report", report_json(d));
 }
 
 static ax_status draw(const char* folder, const ax_design* design, ax_error* error)
 {
-    static const struct {
-        ax_state state;
-        const char* name;
-    } pictures[] = {
-        {AX_STATE_FLAT, "flat.png"}, {AX_STATE_DEPLOYED, "deployed.png"}, {AX_STATE_SIMULATED, "simulated.png"}};
     ax_status status = output_make_folder(folder, error);
-    for (size_t k = 0; k < sizeof pictures / sizeof *pictures && status == AX_OK; ++k) {
-        char path[PATH_MAX];
-        status = output_join(folder, pictures[k].name, path, sizeof path, error);
-        if (status == AX_OK && (pictures[k].state != AX_STATE_SIMULATED || design->simulated))
-            status = ax_picture_design(design, pictures[k].state, 1600, 1200, path, error);
+    ax_state last = design->simulated ? AX_STATE_SIMULATED : AX_STATE_DEPLOYED;
+    for (ax_state state = AX_STATE_FLAT; state <= last && status == AX_OK; ++state) {
+        char name[32], path[PATH_MAX];
+        snprintf(name, sizeof name, "%s.png", ax_state_name(state));
+        status = output_join(folder, name, path, sizeof path, error);
+        if (status == AX_OK)
+            status = ax_picture_design(design, state, 1600, 1200, path, error);
     }
     return status;
 }
