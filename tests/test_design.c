@@ -188,6 +188,23 @@ static void far_away_and_small_models_lose_nothing(void** state)
     ax_design_free(&d);
 }
 
+static void flat_facets_are_named_where_they_keep_the_shell_from_settling(void** state)
+{
+    (void)state;
+    ax_mesh target = shape_paraboloid(2, 0.3);
+    ax_design_options options = ax_design_options_default();
+    options.triangles = 300;
+    ax_design d;
+    ax_error error = {0};
+    assert_int_equal(ax_design_from_target(&target, &options, NULL, &d, &error), AX_FAILED);
+    assert_non_null(strstr(error.message, "facets"));
+    assert_non_null(d.flat); // the geometry is sound and kept
+    assert_at_most(d.report.congruence_max, 1e-9);
+    assert_null(d.simulated); // what is not exact is not
+    ax_mesh_free(&target);
+    ax_design_free(&d);
+}
+
 static void impossible_wishes_are_refused_by_name(void** state)
 {
     (void)state;
@@ -279,6 +296,7 @@ int main(void)
         cmocka_unit_test(supports_are_chosen_in_words),
         cmocka_unit_test(a_shell_held_at_every_other_rim_hinge_hangs_in_balance),
         cmocka_unit_test(far_away_and_small_models_lose_nothing),
+        cmocka_unit_test(flat_facets_are_named_where_they_keep_the_shell_from_settling),
         cmocka_unit_test(impossible_wishes_are_refused_by_name),
         cmocka_unit_test(the_hemisphere_is_reached_at_the_very_limit),
         cmocka_unit_test(cancelling_at_any_report_leaves_nothing),

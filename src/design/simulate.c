@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/vec.h"
 #include "deploy/deploy.h"
+#include "mesh/geometry.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -42,6 +43,19 @@ static void keep_solution(ax_design* design, const ax_deploy_model* model, const
         design->edge_forces[model->edge_source[e] / 3][model->edge_source[e] % 3] = force[e] * newton;
 }
 
+// Flat facets wider than a panel hold straight, taut rows of panels, which no finite force keeps in balance under a load across
+// them: the most common reason why a sound design does not settle.
+static const char* what_to_try(const ax_design* design)
+{
+    double area = 0;
+    for (int f = 0; f < design->target.face_count; ++f)
+        area += ax_face_area(&design->target, f);
+    double facet = design->target.face_count ? sqrt(4 * area / (sqrt(3) * design->target.face_count)) : 0;
+    return facet > design->report.edge_mean ? "The target's facets are wider than the panels, and flat facets carry no "
+                                              "load: refine and smooth the mesh."
+                                            : "Try the other load, more supports, or another number of triangles.";
+}
+
 ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_progress* progress, ax_error* error)
 {
     clear_simulated(design);
@@ -78,10 +92,10 @@ ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_pr
         status =
             ax_fail(error, AX_FAILED,
                     "The deployment did not reach equilibrium: edges are off by %.1e and forces by %.1e of the load "
-                    "after %d projective and %d exact steps%s. Nothing simulated is kept. Try the other load, more "
-                    "supports, or another number of triangles.",
+                    "after %d projective and %d exact steps%s. Nothing simulated is kept. %s",
                     result.residuals.edge, result.residuals.force, result.projective_steps, result.newton_steps,
-                    result.stable || result.residuals.force > 1e-10 ? "" : ", and the state found is not stable");
+                    result.stable || result.residuals.force > 1e-10 ? "" : ", and the state found is not stable",
+                    what_to_try(design));
     ax_design_measure(design);
     design->report.energy = status == AX_OK ? result.energy * newton * model.unit * metre : NAN;
     design->report.stable = status == AX_OK && result.stable;
