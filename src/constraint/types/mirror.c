@@ -1,37 +1,6 @@
 // mirror: keeps two points mirror images of each other in a given plane: both go to the mean of the first and the image
 // of the second.
-#include "constraint/eigen3.h"
-
-enum { POINT, NORMAL = POINT + 3, UNIT = NORMAL + 3, LANES = UNIT + 3 };
-
-static const ax_parameter parameters[] = {
-    {.name = "point",
-     .unit = "point",
-     .doc = "any point of the mirror plane",
-     .standard = 0,
-     .least = -1e12,
-     .most = 1e12,
-     .offset = POINT,
-     .lanes = 3},
-    {.name = "normal",
-     .unit = "direction",
-     .doc = "normal of the mirror plane",
-     .standard = 0,
-     .least = -1e12,
-     .most = 1e12,
-     .offset = NORMAL,
-     .lanes = 3},
-};
-
-static void prepare(ax_lane* restrict block, int points)
-{
-    (void)points;
-    for (int l = 0; l < AX_W; ++l) {
-        double n[3];
-        ax_unit_direction(block + NORMAL, l, n);
-        block[UNIT][l] = n[0], block[UNIT + 1][l] = n[1], block[UNIT + 2][l] = n[2];
-    }
-}
+#include "constraint/given_plane.h"
 
 static void project(const ax_lane* restrict block, const ax_place* place, int points, const ax_lane3* restrict y,
                     ax_lane3* restrict p)
@@ -42,12 +11,12 @@ static void project(const ax_lane* restrict block, const ax_place* place, int po
         for (int k = 0; k < 2; ++k) {
             height[k] = 0;
             for (int i = 0; i < 3; ++i)
-                height[k] += block[UNIT + i][l] * (y[k][i][l] - block[POINT + i][l]);
+                height[k] += block[PLANE_UNIT + i][l] * (y[k][i][l] - block[PLANE_POINT + i][l]);
         }
         // along the plane both get the mean, across it plus and minus half the difference of their heights
         double across = 0.5 * (height[0] - height[1]);
         for (int i = 0; i < 3; ++i) {
-            double n = block[UNIT + i][l];
+            double n = block[PLANE_UNIT + i][l];
             mean[i] = 0.5 * ((y[0][i][l] - height[0] * n) + (y[1][i][l] - height[1] * n));
             p[0][i][l] = mean[i] + across * n, p[1][i][l] = mean[i] - across * n;
         }
@@ -61,9 +30,9 @@ const ax_constraint_type ax_constraint_mirror = {
     .pattern = AX_ROWS_POINTS,
     .least_points = 2,
     .most_points = 2,
-    .lanes = LANES,
-    .parameters = parameters,
-    .parameter_count = sizeof parameters / sizeof *parameters,
-    .prepare = prepare,
+    .lanes = PLANE_LANES,
+    .parameters = ax_given_plane_parameters,
+    .parameter_count = sizeof ax_given_plane_parameters / sizeof *ax_given_plane_parameters,
+    .prepare = ax_given_plane_prepare,
     .project = project,
 };
