@@ -16,6 +16,7 @@ typedef struct group {
     const ax_place* place;
     int points_each, count, blocks;
     double weight;
+    bool soft;          // no multipliers
     int* points;        // count x points_each, as given
     int* slot;          // constraint -> slot; slot / AX_W is its block, slot % AX_W its lane
     int* index;         // per block: [point][lane], places in elimination order; spare lanes repeat the last constraint
@@ -290,6 +291,56 @@ void ax_solver_reset_multipliers(ax_solver* s)
     }
 }
 
+void ax_solver_set_soft(ax_solver* s, int k, bool soft)
+{
+    s->groups[k].soft = soft;
+}
+
+size_t ax_solver_multiplier_count(const ax_solver* s)
+{
+    size_t count = 0;
+    for (int k = 0; k < s->group_count; ++k)
+        count += 3 * (size_t)s->groups[k].count * (size_t)s->groups[k].rows;
+    return count;
+}
+
+// Multiplier of one row of a constraint, coordinate c.
+static double* multiplier(const group* g, int constraint, int row, int c)
+{
+    int slot = g->slot[constraint];
+    return g->dual[(size_t)(slot / AX_W) * (size_t)g->rows + (size_t)row][c] + slot % AX_W;
+}
+
+void ax_solver_get_multipliers(const ax_solver* s, double* out)
+{
+    for (int k = 0; k < s->group_count; ++k)
+        for (int c = 0; c < s->groups[k].count; ++c)
+            for (int r = 0; r < s->groups[k].rows; ++r)
+                for (int d = 0; d < 3; ++d)
+                    *out++ = *multiplier(s->groups + k, c, r, d);
+}
+
+void ax_solver_set_multipliers(ax_solver* s, const double* from)
+{
+    for (int k = 0; k < s->group_count; ++k)
+        for (int c = 0; c < s->groups[k].count; ++c)
+            for (int r = 0; r < s->groups[k].rows; ++r)
+                for (int d = 0; d < 3; ++d)
+                    *multiplier(s->groups + k, c, r, d) = *from++;
+}
+
+double ax_solver_multiplier(const ax_solver* s, int k, int constraint)
+{
+    double most = 0;
+    for (int r = 0; r < s->groups[k].rows; ++r) {
+        double u[3];
+        for (int d = 0; d < 3; ++d)
+            u[d] = *multiplier(s->groups + k, constraint, r, d);
+        most = fmax(most, ax_norm3(u));
+    }
+    return most;
+}
+
 static double mass_term(const ax_solver* s)
 {
     return s->dynamic ? s->dynamics.mass / (s->dynamics.time_step * s->dynamics.time_step) : 0;
@@ -472,14 +523,15 @@ static void project_chunk(void* context, int chunk)
         gather(s, g, b, x);
         form_rows(g, (const ax_lane3*)x, y);
         ax_lane3* dual = g->dual + (size_t)b * (size_t)g->rows;
-        if (s->multipliers)
+        bool hard = s->multipliers && !g->soft;
+        if (hard)
             for (int r = 0; r < g->rows; ++r)
                 for (int c = 0; c < 3; ++c)
                     for (int l = 0; l < AX_W; ++l)
                         y[r][c][l] += dual[r][c][l];
         g->type->project((const ax_lane*)(g->parameter + (size_t)b * (size_t)g->type->lanes), g->place, g->points_each,
                          (const ax_lane3*)y, p);
-        if (s->multipliers)
+        if (hard)
             for (int r = 0; r < g->rows; ++r)
                 for (int c = 0; c < 3; ++c)
                     for (int l = 0; l < AX_W; ++l) {

@@ -41,6 +41,15 @@ void ax_solver_set_dynamics(ax_solver* solver, const ax_dynamics* dynamics);
 // With multipliers (ADMM) constraints end exact instead of balanced against each other; they are kept between calls.
 void ax_solver_use_multipliers(ax_solver* solver, bool use);
 void ax_solver_reset_multipliers(ax_solver* solver);
+// A soft group never carries multipliers: it yields to the others by its weight. Groups start hard.
+void ax_solver_set_soft(ax_solver* solver, int group, bool soft);
+// Multipliers of all groups, three numbers a row, by group, constraint and row whatever the elimination order is: with the places
+// they are all that an iteration depends on.
+size_t ax_solver_multiplier_count(const ax_solver* solver);
+void ax_solver_get_multipliers(const ax_solver* solver, double* out);
+void ax_solver_set_multipliers(ax_solver* solver, const double* multipliers);
+// Largest multiplier among the rows of one constraint, a length: far above the edges' own tells of a conflict.
+double ax_solver_multiplier(const ax_solver* solver, int group, int constraint);
 
 // Analyses and factorises what has changed; called by the two below. False if the matrix is not positive definite: some point
 // is bound by nothing.
