@@ -1314,6 +1314,17 @@ static void check_curve(const ax_curve* curve, double end, double size, uint64_t
         assert_at_most(least - ours, 0.03 * size);
         ax_curve_nearest(curve, p, q); // and it is on the curve
         assert_at_most(ax_distance3(p, q), 1e-13 * size);
+        // derivatives by differences, away from the ends of pieces
+        double first[3], second[3], other[3], step = 1e-4 * end, before[3], after[3];
+        t = end * (round + 0.31) / 100;
+        if (floor(t - step) != floor(t + step) && end > 1)
+            continue;
+        ax_curve_derivatives(curve, t, first, second);
+        ax_curve_point(curve, t - step, before), ax_curve_point(curve, t, other), ax_curve_point(curve, t + step, after);
+        for (int i = 0; i < 3; ++i) {
+            assert_near(first[i], (after[i] - before[i]) / (2 * step), 1e-4 * size);
+            assert_near(second[i], (after[i] - 2 * other[i] + before[i]) / (step * step), 1e-3 * size);
+        }
     }
 }
 

@@ -406,6 +406,16 @@ double ax_curve_nearest(const ax_curve* curve, const double x[3], double out[3])
     return curve->closed && best.t >= curve->count ? 0 : best.t;
 }
 
+// The piece that t lies on; t becomes the fraction of the way along it.
+static int piece_at(const ax_curve* curve, double* t)
+{
+    double n = curve->count;
+    *t = curve->closed ? *t - n * floor(*t / n) : ax_clamp(*t, 0, n);
+    int index = *t < n ? (int)*t : curve->count - 1;
+    *t -= index;
+    return index;
+}
+
 void ax_curve_point(const ax_curve* curve, double t, double out[3])
 {
     if (curve->kind == LINE || curve->kind == ELLIPSE) {
@@ -416,10 +426,33 @@ void ax_curve_point(const ax_curve* curve, double t, double out[3])
             out[i] = curve->point[i] + x * curve->u[i] + y * curve->v[i];
         return;
     }
-    double n = curve->count;
-    t = curve->closed ? t - n * floor(t / n) : ax_clamp(t, 0, n);
-    int index = t < n ? (int)t : curve->count - 1;
-    piece_point(&curve->pieces[index], t - index, out);
+    int index = piece_at(curve, &t);
+    piece_point(&curve->pieces[index], t, out);
+}
+
+void ax_curve_derivatives(const ax_curve* curve, double t, double first[3], double second[3])
+{
+    if (curve->kind == LINE) {
+        copy3(curve->u, first);
+        second[0] = second[1] = second[2] = 0;
+        return;
+    }
+    if (curve->kind == ELLIPSE) {
+        double turn = 2 * AX_PI, x = curve->a * cos(turn * t), y = curve->b * sin(turn * t);
+        double dx = -curve->a * sin(turn * t), dy = curve->b * cos(turn * t);
+        for (int i = 0; i < 3; ++i) {
+            first[i] = turn * (dx * curve->u[i] + dy * curve->v[i]);
+            second[i] = -turn * turn * (x * curve->u[i] + y * curve->v[i]);
+        }
+        return;
+    }
+    const double(*b)[3] = (const double(*)[3])curve->pieces[piece_at(curve, &t)].b;
+    double s = 1 - t;
+    for (int i = 0; i < 3; ++i) {
+        double d[3] = {b[1][i] - b[0][i], b[2][i] - b[1][i], b[3][i] - b[2][i]};
+        first[i] = 3 * (s * s * d[0] + 2 * s * t * d[1] + t * t * d[2]);
+        second[i] = curve->kind == POLYLINE ? 0 : 6 * (s * (d[1] - d[0]) + t * (d[2] - d[1]));
+    }
 }
 
 static void place_nearest(const void* geometry, const double x[3], double out[3])

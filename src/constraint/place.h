@@ -37,5 +37,9 @@ double ax_curve_nearest(const ax_curve* curve, const double x[3], double out[3])
 // The point at t; beyond its ends an open curve stays there, a closed one goes round.
 void ax_curve_point(const ax_curve* curve, double t, double out[3]);
 
+// First and second derivative of the point by t; on a polyline the second vanishes, and at a corner both are those of the
+// piece that begins there. Zero where a curve is a single point.
+void ax_curve_derivatives(const ax_curve* curve, double t, double first[3], double second[3]);
+
 // The curve as a place, borrowed.
 ax_place ax_curve_place(const ax_curve* curve);

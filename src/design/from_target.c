@@ -342,13 +342,19 @@ static ax_status solve_on_lattice(ax_design* design, const flat_domain* domain, 
     lattice->linkage = (ax_linkage){0};
     design->supports = ax_copy(design->linkage.on_rim, (size_t)n, 1);
 
+    ax_joint_place* places = AX_NEW(ax_joint_place, n);
+    for (int h = 0; h < n; ++h)
+        places[h] = snap && design->linkage.on_rim[h]
+                        ? (ax_joint_place){.kind = AX_JOINT_ON_POLYLINE, .polyline = domain->target_curve}
+                        : (ax_joint_place){.kind = AX_JOINT_ON_SURFACE, .surface = domain->target_tree};
     ax_joint_problem problem = {.linkage = &design->linkage,
-                                .surface = domain->target_tree,
-                                .rim = snap ? domain->target_curve : NULL,
-                                .released = options->border == AX_BORDER_RELEASED,
+                                .places = places,
+                                .border_unequal = options->border == AX_BORDER_RELEASED ? INFINITY : 0,
                                 .mouth_min = options->mouth_min * AX_PI / 180,
                                 .scale_max = scale_max};
-    return solve_apart(design, &problem, progress, error);
+    ax_status status = solve_apart(design, &problem, progress, error);
+    ax_free(places);
+    return status;
 }
 
 static void drop_states(ax_design* design)

@@ -1,7 +1,9 @@
 // Unknowns per hinge: flat p (2) and deployed q (3), lengths in units of the mean edge L. Minimise the soft rows
 //   equilateral  w_t (l_k^2 - l_{k+1}^2) / (2 l^2)      three per triangle, l on q
 //   surface      n . (q - c)                            c closest point, n its normal
-//   rim          (I - t t')(q - c)                      t tangent of the boundary curve
+//   curve        (I - t t')(q - c)                      t tangent of the curve at c
+//   fixed        q - c
+//   plane        n . (q - c)                            given, or the best fit of its hinges, held during the step
 //   fairness     (q - q0)_i - (q - q0)_j                every edge
 //   stay         p - p0, q - q0
 //   mouth        min(beta - beta_aim, 0)                one-sided, chosen again at each step
@@ -20,6 +22,7 @@
 #include "joint/joint.h"
 
 #include "base/vec.h"
+#include "constraint/eigen3.h"
 #include "linalg/cholesky.h"
 #include "linkage/lattice.h"
 
@@ -27,11 +30,21 @@
 #include <string.h>
 
 enum { UNKNOWNS = 5, STEPS = 40, ANCHORED_STEPS = 4 };
-static const double weight_inner = 10, weight_border = 3, weight_released = 0.02, weight_surface = 3, weight_rim = 10,
-                    weight_fair = 0.05, weight_stay = 0.003, weight_mouth = 10, mouth_margin = 1.05, mouth_share = 0.7,
-                    mouth_comfort = 15 * AX_PI / 180, apart_margin = 0.02;
+static const double weight_inner = 10, weight_border = 3, weight_released = 0.02, weight_surface = 3, weight_curve = 10,
+                    weight_fixed = 1000, weight_plane = 10, weight_fair = 0.05, weight_stay = 0.003, weight_mouth = 10,
+                    mouth_margin = 1.05, mouth_share = 0.7, mouth_comfort = 15 * AX_PI / 180, apart_margin = 0.02;
 
 typedef double state[UNKNOWNS]; // p0, p1, q0, q1, q2 of one hinge
+
+// Nearest point of a hinge's place, with the normal of a surface or the tangent of a curve there.
+typedef struct contact {
+    double point[3], direction[3];
+    int face; // of a surface, where the next search starts
+} contact;
+
+typedef struct flat_plane {
+    double point[3], normal[3];
+} flat_plane;
 
 typedef struct solver {
     const ax_joint_problem* problem;
@@ -42,13 +55,14 @@ typedef struct solver {
     double flat_origin[2];
     state *x, *anchor, *trial, *step, *right;
     double *congruence, *multiplier; // per edge 3 t + k
-    bool settled;                    // the shape is found: released triangles keep the shape they have
+    bool settled;                    // the shape is found
+    double fine;                     // a step this short is the last
     double mouth_aim;                // radians: below it a mouth is pushed open
-    double* weight;                  // equilateral, per triangle
+    unsigned char* bordering;        // per triangle: at the rim, and not as equilateral as the others must be
     int (*mouth)[3];                 // previous, hinge, next
     unsigned char* active;           // per mouth
-    ax_closest_point* contact;       // per hinge, surface or rim
-    double (*tangent)[3];            // per rim hinge, when on the curve
+    contact* contact;                // per hinge
+    flat_plane* plane;               // per plane of the problem
     unsigned char* in_pattern;       // per mouth: its outer pair is in the matrix
     ax_blocks matrix;
     int (*block)[3]; // per triangle: block opposite each corner
@@ -141,53 +155,166 @@ static double apart_depth(const solver* s, const state* x, int pair, int end[3])
     return least;
 }
 
+// How unequal edges a and b of a triangle are: (l_a^2 - l_b^2) / (2 mean l^2), with its derivative by l_k^2.
+static double unequal(const double l2[3], int a, int b, double slope[3])
+{
+    double mean = (l2[0] + l2[1] + l2[2]) / 3, e = (l2[a] - l2[b]) / (2 * mean);
+    for (int k = 0; k < 3; ++k)
+        slope[k] = ((k == a) - (k == b)) / (2 * mean) - e / (3 * mean);
+    return e;
+}
+
 // Equilateral rows of a triangle: residuals r[3] and gradients with respect to the q of its corners.
 static void equilateral_rows(const solver* s, const state* x, int t, double r[3], double gradient[3][3][3])
 {
     const int* corner = s->linkage->triangles[t];
-    double d[3][3], l2[3], mean = 0;
+    double d[3][3], l2[3], slope[3], most = s->bordering[t] ? s->problem->border_unequal : 0;
     for (int k = 0; k < 3; ++k) {
         ax_sub3(x[corner[(k + 1) % 3]] + 2, x[corner[(k + 2) % 3]] + 2, d[k]);
         l2[k] = ax_dot3(d[k], d[k]);
-        mean += l2[k] / 3;
     }
-    double w = s->weight[t] / mean;
     for (int row = 0; row < 3; ++row) {
-        int a = row, b = (row + 1) % 3;
-        r[row] = s->settled && s->weight[t] == weight_released ? 0 : w * (l2[a] - l2[b]) / 2;
+        double e = unequal(l2, row, (row + 1) % 3, slope), excess = copysign(fmax(fabs(e) - most, 0), e);
+        double w = !s->bordering[t] ? weight_inner : most == 0 || excess != 0 ? weight_border : weight_released;
+        // once the shape is found, released triangles keep the one they have
+        r[row] = w * (excess != 0 || s->settled ? excess : e);
         if (!gradient)
             continue;
         memset(gradient[row], 0, sizeof gradient[row]);
-        for (int c = 0; c < 3; ++c) {
-            gradient[row][(a + 1) % 3][c] += w * d[a][c];
-            gradient[row][(a + 2) % 3][c] -= w * d[a][c];
-            gradient[row][(b + 1) % 3][c] -= w * d[b][c];
-            gradient[row][(b + 2) % 3][c] += w * d[b][c];
-        }
+        for (int k = 0; k < 3; ++k)
+            for (int c = 0; c < 3; ++c) {
+                gradient[row][(k + 1) % 3][c] += w * 2 * slope[k] * d[k][c];
+                gradient[row][(k + 2) % 3][c] -= w * 2 * slope[k] * d[k][c];
+            }
     }
 }
 
-static bool on_curve(const solver* s, int hinge)
+static double worst_unequal(const solver* s, const state* x)
 {
-    return s->problem->rim && s->linkage->on_rim[hinge];
+    double worst = 0;
+    for (int t = 0; t < s->triangles; ++t) {
+        const int* corner = s->linkage->triangles[t];
+        double l2[3], slope[3], most = s->bordering[t] ? s->problem->border_unequal : 0;
+        for (int k = 0; k < 3; ++k) {
+            double d[3];
+            ax_sub3(x[corner[(k + 1) % 3]] + 2, x[corner[(k + 2) % 3]] + 2, d);
+            l2[k] = ax_dot3(d, d);
+        }
+        for (int k = 0; k < 3; ++k)
+            worst = fmax(worst, fabs(unequal(l2, k, (k + 1) % 3, slope)) - most);
+    }
+    return worst;
 }
 
-// Closest points of all deployed hinges; those of the last step seed the search.
-static void find_contacts(solver* s)
+static ax_joint_place_kind place_kind(const solver* s, int hinge)
 {
+    return s->problem->places ? s->problem->places[hinge].kind : AX_JOINT_FREE;
+}
+
+static void unit_vector(double v[3])
+{
+    double length = ax_norm3(v);
+    for (int c = 0; c < 3 && length > 0; ++c)
+        v[c] /= length;
+}
+
+// The plane that fits its hinges best, by principal axes. Fixed hinges, which cannot come to the plane, draw it to them.
+static void fit_plane(const solver* s, const ax_joint_plane* of, flat_plane* plane)
+{
+    static const double draw = 1e3;
+    double total = 0, mean[3] = {0, 0, 0};
+    for (int k = 0; k < of->count; ++k) {
+        double w = place_kind(s, of->hinges[k]) == AX_JOINT_FIXED ? draw * draw : 1;
+        total += w;
+        for (int c = 0; c < 3; ++c)
+            mean[c] += w * s->x[of->hinges[k]][2 + c];
+    }
+    ax_lane3 *arm = ax_calloc((size_t)of->count, sizeof *arm), axis[3]; // one lane of eight is used
+    for (int c = 0; c < 3; ++c)
+        plane->point[c] = mean[c] / total;
+    for (int k = 0; k < of->count; ++k)
+        for (int c = 0; c < 3; ++c)
+            arm[k][c][0] = (place_kind(s, of->hinges[k]) == AX_JOINT_FIXED ? draw : 1) *
+                           (s->x[of->hinges[k]][2 + c] - plane->point[c]);
+    ax_principal_axes(of->count, (const ax_lane3*)arm, axis);
+    for (int c = 0; c < 3; ++c)
+        plane->normal[c] = axis[2][c][0];
+    ax_free(arm);
+}
+
+// Nearest points of all deployed hinges on their places, and the planes. Returns the largest distance.
+static double find_places(solver* s)
+{
+    double worst = 0;
     for (int h = 0; h < s->hinges; ++h) {
-        double place[3];
+        const ax_joint_place* to = s->problem->places ? &s->problem->places[h] : NULL;
+        if (!to || to->kind == AX_JOINT_FREE)
+            continue;
+        contact* found = &s->contact[h];
+        double place[3], second[3];
         for (int c = 0; c < 3; ++c)
             place[c] = s->x[h][2 + c] * s->unit + s->origin[c];
-        ax_closest_point* contact = &s->contact[h];
-        if (on_curve(s, h)) {
-            ax_polyline_point at = ax_polyline_find(s->problem->rim, place);
-            memcpy(contact->point, at.point, sizeof at.point);
-            memcpy(s->tangent[h], at.tangent, sizeof at.tangent);
-        } else
-            *contact = ax_closest_find(s->problem->surface, place, contact->face);
-        for (int c = 0; c < 3; ++c)
-            contact->point[c] = (contact->point[c] - s->origin[c]) / s->unit;
+        if (to->kind == AX_JOINT_ON_SURFACE) {
+            ax_closest_point at = ax_closest_find(to->surface, place, found->face);
+            found->face = at.face;
+            memcpy(found->point, at.point, sizeof at.point);
+            memcpy(found->direction, at.normal, sizeof at.normal);
+        } else if (to->kind == AX_JOINT_ON_POLYLINE) {
+            ax_polyline_point at = ax_polyline_find(to->polyline, place);
+            memcpy(found->point, at.point, sizeof at.point);
+            memcpy(found->direction, at.tangent, sizeof at.tangent);
+        } else if (to->kind == AX_JOINT_ON_CURVE) {
+            double t = ax_curve_nearest(to->curve, place, found->point);
+            ax_curve_derivatives(to->curve, t, found->direction, second);
+            unit_vector(found->direction);
+        }
+        if (to->kind != AX_JOINT_FIXED) // those stand where they are held
+            for (int c = 0; c < 3; ++c)
+                found->point[c] = (found->point[c] - s->origin[c]) / s->unit;
+        worst = fmax(worst, ax_distance3(s->x[h] + 2, found->point));
+    }
+    for (int p = 0; p < s->problem->plane_count; ++p) {
+        const ax_joint_plane* of = &s->problem->planes[p];
+        flat_plane* plane = &s->plane[p];
+        if (of->given)
+            for (int c = 0; c < 3; ++c)
+                plane->point[c] = (of->point[c] - s->origin[c]) / s->unit, plane->normal[c] = of->normal[c];
+        else
+            fit_plane(s, of, plane);
+        unit_vector(plane->normal);
+        for (int k = 0; k < of->count; ++k) {
+            double d[3];
+            ax_sub3(s->x[of->hinges[k]] + 2, plane->point, d);
+            worst = fmax(worst, fabs(ax_dot3(plane->normal, d)));
+        }
+    }
+    return worst;
+}
+
+// Weighs the distance d of a hinge from its place: out = W d, W symmetric; `matrix` receives W.
+static void weigh_place(const solver* s, int h, const double d[3], double out[3], double matrix[3][3])
+{
+    ax_joint_place_kind kind = place_kind(s, h);
+    const double* n = s->contact[h].direction;
+    for (int r = 0; r < 3; ++r) {
+        out[r] = 0;
+        for (int c = 0; c < 3; ++c) {
+            switch (kind) {
+            case AX_JOINT_ON_SURFACE:
+                matrix[r][c] = weight_surface * weight_surface * n[r] * n[c];
+                break;
+            case AX_JOINT_ON_POLYLINE:
+            case AX_JOINT_ON_CURVE:
+                matrix[r][c] = weight_curve * weight_curve * ((r == c) - n[r] * n[c]);
+                break;
+            case AX_JOINT_FIXED:
+                matrix[r][c] = weight_fixed * weight_fixed * (r == c);
+                break;
+            default:
+                matrix[r][c] = 0;
+            }
+            out[r] += matrix[r][c] * d[c];
+        }
     }
 }
 
@@ -200,20 +327,22 @@ static double objective(const solver* s, const state* x)
         equilateral_rows(s, x, t, r, NULL);
         sum += r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
     }
-    double stay = 0, contact = 0;
+    double stay = 0, placed = 0;
     for (int h = 0; h < s->hinges; ++h) {
-        double d[3];
+        double d[3], weighed[3], matrix[3][3];
         ax_sub3(x[h] + 2, s->contact[h].point, d);
-        if (on_curve(s, h)) {
-            double along = ax_dot3(s->tangent[h], d);
-            contact += weight_rim * weight_rim * (ax_dot3(d, d) - along * along);
-        } else {
-            double out = ax_dot3(s->contact[h].normal, d);
-            contact += weight_surface * weight_surface * out * out;
-        }
+        weigh_place(s, h, d, weighed, matrix);
+        placed += ax_dot3(d, weighed);
         for (int k = 0; k < UNKNOWNS; ++k)
             stay += (x[h][k] - s->anchor[h][k]) * (x[h][k] - s->anchor[h][k]);
     }
+    for (int p = 0; p < s->problem->plane_count; ++p)
+        for (int k = 0; k < s->problem->planes[p].count; ++k) {
+            double d[3], out;
+            ax_sub3(x[s->problem->planes[p].hinges[k]] + 2, s->plane[p].point, d);
+            out = ax_dot3(s->plane[p].normal, d);
+            placed += weight_plane * weight_plane * out * out;
+        }
     double fair = 0;
     for (int e = 0; e < s->edges; ++e) {
         int i, j;
@@ -233,7 +362,7 @@ static double objective(const solver* s, const state* x)
         double into = fmax(apart_depth(s, x, pair, end) + apart_margin, 0);
         mouths += into * into;
     }
-    return (sum + contact + weight_stay * weight_stay * stay + weight_fair * weight_fair * fair +
+    return (sum + placed + weight_stay * weight_stay * stay + weight_fair * weight_fair * fair +
             weight_mouth * weight_mouth * mouths) /
            2;
 }
@@ -334,23 +463,28 @@ static void assemble(solver* s, double mu)
         }
     }
     for (int h = 0; h < s->hinges; ++h) {
-        double block[UNKNOWNS * UNKNOWNS] = {0}, d[3];
+        double block[UNKNOWNS * UNKNOWNS] = {0}, d[3], weighed[3], matrix[3][3];
         ax_sub3(x[h] + 2, s->contact[h].point, d);
-        const double *n = s->contact[h].normal, *t = s->tangent[h];
-        bool curve = on_curve(s, h);
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c) {
-                double w = curve ? weight_rim * weight_rim * ((r == c) - t[r] * t[c])
-                                 : weight_surface * weight_surface * n[r] * n[c];
-                block[(r + 2) * UNKNOWNS + c + 2] = w;
-                s->right[h][2 + r] += w * d[c];
-            }
+        weigh_place(s, h, d, weighed, matrix);
+        for (int r = 0; r < 3; ++r) {
+            memcpy(block + (r + 2) * UNKNOWNS + 2, matrix[r], sizeof matrix[r]);
+            s->right[h][2 + r] += weighed[r];
+        }
         for (int k = 0; k < UNKNOWNS; ++k) {
             block[k * UNKNOWNS + k] += weight_stay * weight_stay;
             s->right[h][k] += weight_stay * weight_stay * (x[h][k] - s->anchor[h][k]);
         }
         ax_blocks_add_diagonal(&s->matrix, h, block);
     }
+    for (int p = 0; p < s->problem->plane_count; ++p)
+        for (int k = 0; k < s->problem->planes[p].count; ++k) {
+            int h = s->problem->planes[p].hinges[k];
+            double d[3], gradient[UNKNOWNS] = {0}, w = weight_plane * weight_plane;
+            ax_sub3(x[h] + 2, s->plane[p].point, d);
+            memcpy(gradient + 2, s->plane[p].normal, sizeof s->plane[p].normal);
+            add_square(s, h, gradient, w);
+            add_scaled(s->right[h], gradient, w * ax_dot3(s->plane[p].normal, d));
+        }
     for (int m = 0; m < s->mouths; ++m) {
         if (!s->active[m])
             continue;
@@ -466,11 +600,16 @@ static solver make(const ax_joint_problem* problem, double (*flat)[2], double (*
     s.right = ax_alloc((size_t)n, sizeof *s.x);
     s.congruence = AX_NEW0(double, s.edges);
     s.multiplier = AX_NEW0(double, s.edges);
-    s.weight = AX_NEW(double, s.triangles);
+    // triangles at the rim give way where the rim is held
+    s.bordering = AX_NEW0(unsigned char, s.triangles);
     for (int t = 0; t < s.triangles; ++t) {
-        const int* corner = linkage->triangles[t];
-        bool border = linkage->on_rim[corner[0]] || linkage->on_rim[corner[1]] || linkage->on_rim[corner[2]];
-        s.weight[t] = !border || !problem->rim ? weight_inner : problem->released ? weight_released : weight_border;
+        bool border = false, held = false;
+        for (int k = 0; k < 3; ++k) {
+            int h = linkage->triangles[t][k];
+            border |= linkage->on_rim[h];
+            held |= linkage->on_rim[h] && place_kind(&s, h) > AX_JOINT_ON_SURFACE;
+        }
+        s.bordering[t] = held || (border && problem->border_unequal > 0);
     }
     s.mouth = ax_linkage_mouths(linkage, &s.mouths);
     // aim above the bound where the scale leaves room: snapping the rim costs border mouths up to 13 degrees otherwise
@@ -478,10 +617,16 @@ static solver make(const ax_joint_problem* problem, double (*flat)[2], double (*
                        fmin(mouth_comfort, mouth_share * 2 * (AX_PI / 3 - acos(1 / problem->scale_max))));
     s.active = AX_NEW0(unsigned char, s.mouths);
     s.in_pattern = AX_NEW0(unsigned char, s.mouths);
-    s.contact = AX_NEW0(ax_closest_point, n);
-    for (int h = 0; h < n; ++h)
+    s.contact = AX_NEW0(contact, n);
+    for (int h = 0; h < n; ++h) {
         s.contact[h].face = -1;
-    s.tangent = ax_calloc((size_t)n, sizeof *s.tangent);
+        memcpy(s.contact[h].point, s.x[h] + 2, sizeof s.contact[h].point); // where a fixed hinge is held
+    }
+    s.plane = AX_NEW0(flat_plane, problem->plane_count);
+    s.fine = 1e-9;
+    for (int h = 0; h < n; ++h)
+        if (place_kind(&s, h) == AX_JOINT_ON_SURFACE)
+            s.fine = 1e-6; // facets are no smoother
     s.block = ax_alloc((size_t)s.triangles, sizeof *s.block);
     build_pattern(&s);
     return s;
@@ -489,8 +634,8 @@ static solver make(const ax_joint_problem* problem, double (*flat)[2], double (*
 
 static void release(solver* s)
 {
-    void* blocks[] = {s->x,      s->anchor, s->trial,  s->step,       s->right,   s->congruence, s->multiplier,
-                      s->weight, s->mouth,  s->active, s->in_pattern, s->contact, s->tangent,    s->block};
+    void* blocks[] = {s->x,     s->anchor, s->trial,      s->step,    s->right, s->congruence, s->multiplier,
+                      s->mouth, s->active, s->in_pattern, s->contact, s->plane, s->bordering,  s->block};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_blocks_free(&s->matrix);
@@ -503,7 +648,7 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
     solver s = make(problem, flat, deployed);
     ax_status status = AX_OK;
     size_t bytes = (size_t)s.hinges * sizeof *s.x;
-    double mu = 1e3, longest = INFINITY, congruence = worst_congruence(&s, (const state*)s.x);
+    double mu = 1e3, longest = INFINITY, off_place = 0, congruence = worst_congruence(&s, (const state*)s.x);
     int k = 0;
     for (; k < STEPS; ++k) {
         if (!ax_progress_report(progress, "Solving flat and deployed state together", fmin(0.95, k / 8.0),
@@ -511,9 +656,9 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
             status = ax_fail(error, AX_CANCELLED, "Cancelled.");
             break;
         }
-        if (congruence < 1e-12 && (longest < 1e-6 || k > 3 * ANCHORED_STEPS))
+        off_place = find_places(&s);
+        if (congruence < 1e-12 && (longest < s.fine || k > 3 * ANCHORED_STEPS))
             break;
-        find_contacts(&s);
         refresh_active(&s);
         assemble(&s, mu);
         if (!ax_cholesky_factor(s.factor, &s.matrix.matrix))
@@ -552,8 +697,12 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
             for (int c = 0; c < 3; ++c)
                 deployed[h][c] = s.x[h][2 + c] * s.unit + s.origin[c];
         }
-    *result = (ax_joint_result){
-        .steps = k, .factorisations = s.factorisations, .congruence = congruence, .converged = congruence < 1e-10};
+    *result = (ax_joint_result){.steps = k,
+                                .factorisations = s.factorisations,
+                                .converged = congruence < 1e-10,
+                                .congruence = congruence,
+                                .off_place = off_place,
+                                .unequal = worst_unequal(&s, (const state*)s.x)};
     release(&s);
     return status;
 }
