@@ -56,6 +56,7 @@ typedef struct ax_constraint_type {
     int least_points, most_points;
     int symmetry;
     bool flat;        // lives in the plane z = 0: reads x and y, returns z = 0
+    bool partly_flat; // some of its rows live there
     bool approximate; // p is admissible, and y stays if it is, but p is only nearly the nearest; `doc` says how
     bool needs_place; // project() asks the group's geometry
     int lanes; // per block of AX_W constraints: parameter k of constraint l is block[k][l], prepared lanes after them
