@@ -241,6 +241,23 @@ void ax_solver_set(ax_solver* s, int k, int constraint, int lane, double value)
         g->type->prepare(block, g->points_each);
 }
 
+void ax_solver_set_all(ax_solver* s, int k, int first, int lanes, const double* values)
+{
+    group* g = s->groups + k;
+    assert(first + lanes <= g->type->lanes);
+    size_t each = (size_t)g->type->lanes;
+    for (int c = 0; c < g->count; ++c) {
+        int slot = g->slot[c];
+        ax_lane* block = g->parameter + (size_t)(slot / AX_W) * each + (size_t)first;
+        int end = slot == g->count - 1 ? AX_W : slot % AX_W + 1; // spare lanes repeat the last constraint
+        for (int i = 0; i < lanes; ++i)
+            for (int l = slot % AX_W; l < end; ++l)
+                block[i][l] = values[(size_t)c * (size_t)lanes + (size_t)i];
+    }
+    for (int b = 0; b < g->blocks && g->type->prepare; ++b)
+        g->type->prepare(g->parameter + (size_t)b * each, g->points_each);
+}
+
 double ax_solver_get(const ax_solver* s, int k, int constraint, int lane)
 {
     const group* g = s->groups + k;

@@ -24,6 +24,8 @@ int ax_solver_add(ax_solver* solver, const ax_constraint_type* type, int points_
 void ax_solver_set_weight(ax_solver* solver, int group, double weight);
 // Parameter `lane` (its offset in the type's table) of one constraint.
 void ax_solver_set(ax_solver* solver, int group, int constraint, int lane, double value);
+// Parameters `first` .. `first + lanes - 1` of all constraints of a group at once, constraint by constraint.
+void ax_solver_set_all(ax_solver* solver, int group, int first, int lanes, const double* values);
 double ax_solver_get(const ax_solver* solver, int group, int constraint, int lane);
 
 void ax_solver_set_places(ax_solver* solver, const double (*places)[3]);
