@@ -3,7 +3,7 @@
 
 #include "ax/report.h"
 #include "base/vec.h"
-#include "export/stroke_font.h"
+#include "fabricate/stroke_font.h"
 #include "picture/colour.h"
 #include "support/sample.h"
 #include "support/test.h"

@@ -1,14 +1,16 @@
 // Writing a design to files of other programs, chosen by ending.
 #pragma once
 
-#include "ax/design.h"
+#include "ax/fabricate.h"
 
 typedef enum ax_state { AX_STATE_DEFAULT, AX_STATE_FLAT, AX_STATE_DEPLOYED, AX_STATE_SIMULATED } ax_state;
 const char* ax_state_name(ax_state state); // "default", "flat", "deployed", "simulated"
 
 typedef struct ax_export_options {
-    ax_state state;    // AX_STATE_DEFAULT: flat for cut files, deployed otherwise
-    const char* title; // name shown in drawings, NULL: none
+    ax_state state;                        // AX_STATE_DEFAULT: flat for cut files, deployed otherwise
+    const char* title;                     // name shown in drawings, NULL: none
+    const ax_fabricate_options* fabricate; // for cut files; its title is replaced by `title`. NULL: defaults
+    const ax_progress* progress;           // NULL: none
 } ax_export_options;
 
 // One exporter: a file of its own in src/export/types.
@@ -20,12 +22,18 @@ typedef struct ax_export_type {
     bool states[4]; // which ax_state values it can write
     ax_status (*write)(const ax_design* design, ax_state state, const ax_export_options* options, const char* path,
                        ax_error* error); // writes the whole file to `path` as it is; the caller renames
+    // Instead of `write`, for cut files: writes one sheet of the plan, or the overview if `sheet` is plan->sheet_count.
+    // With `all_sheets` it is called once, with sheet 0, and writes every sheet and the overview to one file.
+    ax_status (*write_sheet)(const ax_design* design, const ax_cut_plan* plan, int sheet, const char* path,
+                             ax_error* error);
+    bool all_sheets;
 } ax_export_type;
 
 // All exporters, in order of their endings.
 const ax_export_type* const* ax_export_types(int* count);
 
-// Writes beside `path` and renames, so that no partial file is ever left. NULL options: default state, no title. AX_USAGE on an
+// Writes beside `path` and renames, so that no partial file is ever left. Cut files of several sheets become NAME-1.svg,
+// NAME-2.svg and so on beside an overview in NAME.svg, unless the format holds them all in one file. NULL options: default state, no title. AX_USAGE on an
 // unknown ending (the message lists the known ones) or a state the format does not carry; AX_BAD_INPUT when the state is missing
 // (not simulated); AX_FAILED when the disk does not take it.
 ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error);

@@ -69,6 +69,90 @@ static void name_destination(const ax_file* file, ax_error* error)
     }
 }
 
+// What is written: a file as `write` makes it, or one sheet of a plan.
+typedef struct job {
+    const ax_design* design;
+    const ax_export_type* type;
+    ax_state state;
+    const ax_export_options* options;
+    const ax_cut_plan* plan;
+} job;
+
+static ax_status write_file(const job* j, int sheet, ax_file* file, ax_error* error)
+{
+    // numbers have a decimal point whatever the program's locale says
+    locale_t plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), before = uselocale(plain);
+    ax_status status = j->plan ? j->type->write_sheet(j->design, j->plan, sheet, file->path, error)
+                               : j->type->write(j->design, j->state, j->options, file->path, error);
+    uselocale(before);
+    freelocale(plain);
+    if (status != AX_OK)
+        name_destination(file, error);
+    return status;
+}
+
+static ax_status write_one(const job* j, const char* path, ax_error* error)
+{
+    ax_file file;
+    ax_status status = ax_file_begin_path(&file, path, error);
+    if (status != AX_OK)
+        return status;
+    status = write_file(j, 0, &file, error);
+    if (status == AX_OK)
+        return ax_file_commit(&file, error);
+    ax_file_abandon(&file);
+    return status;
+}
+
+// "dome.svg" and sheet 2 to "dome-3.svg"; the overview keeps the name.
+static char* sheet_path(const job* j, const char* path, int sheet)
+{
+    size_t length = strlen(path), stem = length - strlen(j->type->ending);
+    char* name = ax_alloc(length + 16, 1);
+    if (sheet == j->plan->sheet_count)
+        snprintf(name, length + 16, "%s", path);
+    else
+        snprintf(name, length + 16, "%.*s-%d%s", (int)stem, path, sheet + 1, path + stem);
+    return name;
+}
+
+// All sheets are written before the first is renamed.
+static ax_status write_sheets(const job* j, const char* path, ax_error* error)
+{
+    int count = j->plan->sheet_count + 1, begun = 0;
+    ax_file* files = AX_NEW0(ax_file, count);
+    ax_status status = AX_OK;
+    for (; begun < count && status == AX_OK; ++begun) {
+        char* name = sheet_path(j, path, begun);
+        status = ax_file_begin_path(&files[begun], name, error);
+        ax_free(name);
+        if (status != AX_OK)
+            break;
+        status = write_file(j, begun, &files[begun], error);
+    }
+    for (int k = 0; k < begun; ++k)
+        if (status == AX_OK)
+            status = ax_file_commit(&files[k], error);
+        else
+            ax_file_abandon(&files[k]);
+    ax_free(files);
+    return status;
+}
+
+static ax_status export_plan(job* j, const char* path, ax_error* error)
+{
+    ax_fabricate_options fabricate = j->options->fabricate ? *j->options->fabricate : ax_fabricate_options_default();
+    fabricate.title = j->options->title;
+    ax_cut_plan plan;
+    ax_status status = ax_fabricate(j->design, &fabricate, j->options->progress, &plan, error);
+    if (status != AX_OK)
+        return status;
+    j->plan = &plan;
+    status = plan.sheet_count > 1 && !j->type->all_sheets ? write_sheets(j, path, error) : write_one(j, path, error);
+    ax_cut_plan_free(&plan);
+    return status;
+}
+
 ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error)
 {
     const ax_export_options given = options ? *options : (ax_export_options){0};
@@ -79,18 +163,6 @@ ax_status ax_export(const ax_design* design, const char* path, const ax_export_o
     ax_status status = check_state(design, type, state, error);
     if (status != AX_OK)
         return status;
-    ax_file file;
-    status = ax_file_begin_path(&file, path, error);
-    if (status != AX_OK)
-        return status;
-    // numbers have a decimal point whatever the program's locale says
-    locale_t plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), before = uselocale(plain);
-    status = type->write(design, state, &given, file.path, error);
-    uselocale(before);
-    freelocale(plain);
-    if (status == AX_OK)
-        return ax_file_commit(&file, error);
-    name_destination(&file, error);
-    ax_file_abandon(&file);
-    return status;
+    job j = {.design = design, .type = type, .state = state, .options = &given};
+    return type->write_sheet ? export_plan(&j, path, error) : write_one(&j, path, error);
 }

@@ -1,7 +1,7 @@
 // SVG cut file: the flat panels at true size. One user unit is a millimetre, and width, height and viewBox all say so; programs
 // that guess a resolution have nothing to guess. Layers in the order of work: LABEL, CUT, and NOTE, which is not machined.
 #include "base/vec.h"
-#include "export/stroke_font.h"
+#include "fabricate/stroke_font.h"
 #include "export/writing.h"
 
 #include <jansson.h>

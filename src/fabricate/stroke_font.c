@@ -1,4 +1,4 @@
-#include "export/stroke_font.h"
+#include "fabricate/stroke_font.h"
 
 #include <ctype.h>
 

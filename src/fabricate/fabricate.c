@@ -1,0 +1,167 @@
+// From a design to a cut plan: scale to millimetres, panels by the joint's rule, sheets, drawing, order.
+#include "ax/fabricate.h"
+
+#include "fabricate/work.h"
+#include "linkage/lattice.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const ax_joint_type* ax_joint_named(const char* name)
+{
+    int count;
+    const ax_joint_type* const* types = ax_joint_types(&count);
+    for (int k = 0; k < count; ++k)
+        if (strcmp(types[k]->name, name) == 0)
+            return types[k];
+    return NULL;
+}
+
+ax_fabricate_options ax_fabricate_options_default(void)
+{
+    ax_fabricate_options o = {
+        .joint = ax_joint_named("none"),
+        .material = ax_material_named("card-0.5"),
+        .margin = 10,
+        .spacing = 2,
+        .clearance = true,
+    };
+    for (int k = 0; k < 8; ++k)
+        o.joint_values[k] = NAN;
+    return o;
+}
+
+static void begin(ax_work* w)
+{
+    const ax_design* d = w->design;
+    const ax_fabricate_options* o = w->options;
+    ax_cut_plan* plan = w->plan;
+    double mm = 1000 * ax_unit_in_metres(d->unit);
+    w->flat = ax_alloc((size_t)w->linkage->hinge_count, sizeof *w->flat);
+    for (int h = 0; h < w->linkage->hinge_count; ++h)
+        for (int k = 0; k < 2; ++k)
+            w->flat[h][k] = mm * d->flat[h][k];
+    w->held = ax_linkage_hinge_triangles(w->linkage);
+    plan->joint = o->joint;
+    for (int k = 0; k < o->joint->parameter_count; ++k)
+        plan->joint_values[k] = isnan(o->joint_values[k]) ? o->joint->parameters[k].standard : o->joint_values[k];
+    plan->material = o->material;
+    plan->thickness = o->thickness > 0 ? o->thickness : o->material->thickness;
+    plan->kerf = o->kerf;
+    int profiles;
+    plan->profile = o->profile ? o->profile : ax_profiles(&profiles);
+    snprintf(plan->title, sizeof plan->title, "%s", o->title ? o->title : "");
+    snprintf(plan->date, sizeof plan->date, "%s", o->date ? o->date : "");
+    w->joint = (ax_joint_job){plan->joint_values, plan->thickness, plan->kerf, plan->material};
+}
+
+static ax_status shape_panels(ax_work* w, ax_error* error)
+{
+    ax_cut_plan* plan = w->plan;
+    plan->panel_count = w->linkage->triangle_count;
+    plan->panels = AX_NEW0(ax_cut_panel, plan->panel_count);
+    for (int t = 0; t < plan->panel_count; ++t) {
+        ax_cut_panel* p = &plan->panels[t];
+        ax_panel_name(w->linkage, t, p->name);
+        p->row = w->linkage->panels[t][1];
+        p->layer = plan->joint->two_layers ? w->linkage->panels[t][2] : 0;
+        ax_panel_outline o = ax_work_outline(w, t, 0);
+        if (o.slack[o.tight] < 0)
+            return ax_fail(
+                error, AX_CANNOT_REALISE,
+                "Panel %s is too small for the joint \"%s\": one of its edges is %.3g mm too short. Make the "
+                "joint smaller, or design with fewer and larger panels.",
+                p->name, plan->joint->name, -o.slack[o.tight]);
+        p->first = plan->path_count;
+        ax_panel_put_outline(&w->builder, &o, &ax_stay);
+        for (int k = 0; k < 3 && o.hole_radius > 0; ++k)
+            ax_panel_put_hole(&w->builder, &o, k, &ax_stay);
+        p->count = plan->path_count - p->first;
+        for (int k = p->first; k < p->first + p->count; ++k)
+            p->area += ax_path_area(plan, &plan->paths[k]);
+        p->mass = p->area * plan->thickness * 1e-9 * plan->material->density;
+        plan->area += p->area;
+        plan->mass += p->mass;
+    }
+    return AX_OK;
+}
+
+static void draw_panel(ax_work* w, int t)
+{
+    const ax_cut_panel* p = &w->plan->panels[t];
+    ax_motion motion = {p->placement[0], p->placement[1], p->placement[2], p->placement[3]};
+    ax_panel_outline o = ax_work_outline(w, t, w->plan->kerf / 2);
+    ax_put_label(w, t);
+    for (int k = 0; k < 3 && o.hole_radius > 0; ++k) {
+        ax_plan_item(&w->builder, AX_HOLE, t, "hole-%s.%d", p->name, k);
+        ax_panel_put_hole(&w->builder, &o, k, &motion);
+    }
+    ax_plan_item(&w->builder, AX_CUT, t, "cut-%s", p->name);
+    ax_panel_put_outline(&w->builder, &o, &motion);
+}
+
+static void draw_sheets(ax_work* w)
+{
+    ax_cut_plan* plan = w->plan;
+    for (int s = 0; s < plan->sheet_count; ++s) {
+        ax_cut_sheet* sheet = &plan->sheets[s];
+        double area = 0;
+        sheet->first = plan->item_count;
+        for (int t = 0; t < plan->panel_count; ++t)
+            if (plan->panels[t].sheet == s) {
+                draw_panel(w, t);
+                area += plan->panels[t].area;
+            }
+        ax_put_notes(w, s);
+        sheet->count = plan->item_count - sheet->first;
+        sheet->utilisation = area / (sheet->width * sheet->height);
+        ax_order_sheet(plan, sheet);
+    }
+}
+
+static void measure(ax_cut_plan* plan)
+{
+    double sheets = 0;
+    for (int s = 0; s < plan->sheet_count; ++s) {
+        const ax_cut_sheet* sheet = &plan->sheets[s];
+        sheets += sheet->width * sheet->height;
+        for (int i = sheet->first; i < sheet->first + sheet->count; ++i)
+            for (int k = plan->items[i].first; k < plan->items[i].first + plan->items[i].count; ++k)
+                plan->cut_length[plan->items[i].operation] += ax_path_length(plan, &plan->paths[k]);
+    }
+    plan->utilisation = plan->area / sheets;
+    for (int k = 0; k < AX_NOTE; ++k)
+        if (plan->profile->pens[k].used)
+            plan->seconds += plan->cut_length[k] / plan->profile->pens[k].speed;
+    plan->seconds += plan->travel / plan->profile->travel_speed;
+}
+
+ax_status ax_fabricate(const ax_design* design, const ax_fabricate_options* options, const ax_progress* progress,
+                       ax_cut_plan* plan, ax_error* error)
+{
+    const ax_fabricate_options standard = ax_fabricate_options_default();
+    *plan = (ax_cut_plan){0};
+    ax_work w = {.design = design,
+                 .linkage = &design->linkage,
+                 .options = options ? options : &standard,
+                 .progress = progress,
+                 .plan = plan,
+                 .builder = {.plan = plan}};
+    begin(&w);
+    ax_status status = w.plan->joint->work->rule(&w.joint, &w.rule, error);
+    if (status == AX_OK)
+        status = shape_panels(&w, error);
+    if (status == AX_OK) {
+        ax_choose_labels(&w);
+        status = ax_lay_out(&w, error);
+    }
+    if (status == AX_OK) {
+        draw_sheets(&w);
+        measure(plan);
+    } else
+        ax_cut_plan_free(plan);
+    ax_free(w.flat);
+    ax_free(w.held);
+    return status;
+}

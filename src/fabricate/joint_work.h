@@ -1,0 +1,31 @@
+// How a joint is done: what it asks of a panel's corners. Joint types are pure rules; outlines, checks, labels and sheets are made
+// from the rules in one place (outline.h).
+#pragma once
+
+#include "ax/fabricate.h"
+
+// What a joint knows when it lays down its rule.
+typedef struct ax_joint_job {
+    const double* value; // of the joint's parameters
+    double thickness, kerf;
+    const ax_material* material;
+} ax_joint_job;
+
+// The rule of all panels. A panel is its triangle with edges moved inward by `inset`, and round each hinge a disc with its centre
+// `ear` inward of the hinge on the bisector of the corner, or less where the disc would come off the edges.
+typedef struct ax_panel_rule {
+    double inset;       // >= 0
+    double ear, radius; // disc: distance of its centre from the hinge, and radius; radius 0: a plain corner
+    double hole_offset; // holes lie on the bisector as well
+    double hole_radius; // 0: none
+    double play;        // neighbours must stay this far apart, besides the kerf
+} ax_panel_rule;
+
+struct ax_joint_work {
+    // Checks the parameters against each other and the material. AX_CANNOT_REALISE names the limit.
+    ax_status (*rule)(const ax_joint_job* job, ax_panel_rule* rule, ax_error* error);
+    // Force that one joint is taken to bear, N.
+    double (*rated)(const ax_joint_job* job);
+    // Loose parts that `joints` inner hinges and `rim` hinges of one panel take; count 0: none.
+    void (*part)(const ax_joint_job* job, int joints, ax_cut_part* part);
+};
