@@ -197,7 +197,7 @@ static void panels_solve_what_was_factorised(void** state)
             ax_entries_add(&entries, g.edge[e][0], g.edge[e][1], -1);
         ax_sparse matrix = ax_entries_sparse(&entries, g.points);
         int *order = AX_NEW(int, g.points), *seen = AX_NEW0(int, g.points);
-        ax_order_by_place(&matrix, (const double(*)[3])g.place, order);
+        ax_order_by_place(&matrix, (const double(*)[3])g.place, NULL, order);
         for (int v = 0; v < g.points; ++v)
             assert_int_equal(seen[order[v]]++, 0); // a permutation
         ax_cholesky* factor = ax_cholesky_analyse_ordered(&matrix, AX_FACTOR_PANELS, order);

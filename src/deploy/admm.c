@@ -33,7 +33,7 @@ static void factorise(ax_admm* a, ax_entries* entries)
     int* order = AX_NEW(int, m->unknowns);
     for (int u = 0; u < m->unknowns; ++u)
         memcpy(place[u], m->rest[m->hinge[u]], sizeof *m->rest);
-    ax_order_by_place(&laplacian, (const double(*)[3])place, order);
+    ax_order_by_place(&laplacian, (const double(*)[3])place, NULL, order);
     ax_cholesky* factor = ax_cholesky_analyse_ordered(&laplacian, AX_FACTOR_PANELS, order);
     ax_cholesky_factor(factor, &laplacian); // an edge Laplacian plus 1e-9 is positive definite
     a->factor = ax_panels_make(factor);

@@ -1,118 +1,58 @@
-// Recursive bisection at the median along the direction that leaves the smallest separator: nodes on one side with a neighbour
-// on the other, eliminated after both. Below LEAF nodes, and within separators, a constrained minimum degree order fills in.
+// Recursive bisection: each part is cut along the direction, of a few, whose sweep between 40 and 60 % of its nodes meets the
+// smallest separator: nodes before the cut with a neighbour behind it, eliminated after both sides. Sweeps count in bins much
+// finer than a row of the mesh, so nothing is sorted. Parts of at most LEAF nodes are ordered by exact minimum degree.
 #include "linalg/order.h"
 
 #include "base/vec.h"
 #include "linalg/cholmod_view.h"
 
 #include <assert.h>
-#include <stdlib.h>
+#include <stdatomic.h>
+#include <stdint.h>
+#include <string.h>
 
-enum { LEAF = 100 };
+enum {
+    LEAF = 128,     // nodes of a leaf, and at most as many of its neighbours
+    WHOLE = 8192,   // parts up to this size are dissected to the end by one task
+    DIRECTIONS = 6, // in the plane of the two largest extents: triangular lattices have cheap cuts every thirty degrees
+};
+
+typedef struct part {
+    int from, to; // of `node`; separators below it lie behind its halves
+} part;
+
+typedef struct cut {
+    double direction[3], low, scale; // bin of a node: (direction . place - low) * scale
+    int bin, size;                   // nodes up to this bin lie before the cut; of the separator
+} cut;
 
 typedef struct dissection {
     const int *start, *neighbour; // full adjacency
     const double (*place)[3];
-    int *node, *side, *ahead, *set, sets; // ahead: neighbours behind the cut
-    double* key;
+    double* reach;     // per node: distance to its farthest neighbour
+    int* node;         // the order in the making
+    int* part_of;      // per node: `from` of its part, -1 in a separator
+    int* scratch;      // per node; leaves keep local numbers here
+    atomic_bool dense; // some part cannot be cut
+    const part* parts; // of the loop that runs: its parts, their directions and halves
+    cut* cuts;
+    part (*halves)[2];
 } dissection;
 
-// Directions in which a part may be cut, in the plane of its two largest extents. Triangular lattices have cheap cuts every
-// thirty degrees.
-enum { DIRECTIONS = 6 };
-
-static bool before(const dissection* d, int a, int b)
+static inline double along(const cut* c, const double* x)
 {
-    return d->key[a] < d->key[b] || (d->key[a] == d->key[b] && a < b); // ties by number: the order is unique
+    return (x[0] * c->direction[0] + x[1] * c->direction[1] + x[2] * c->direction[2] - c->low) * c->scale;
 }
 
-// Partial sort of the nodes [from, to): those with smaller keys come before `middle`.
-static void select_median(dissection* d, int from, int to, int middle)
+// The unit directions to try and the bins along them; none if all nodes lie in one place.
+static void directions(const dissection* d, part p, int tried, cut* cuts)
 {
-    int* node = d->node;
-    while (to - from > 1) {
-        int a = node[from], b = node[from + (to - from - 1) / 2], c = node[to - 1];
-        int value = before(d, a, b) ? (before(d, b, c) ? b : (before(d, a, c) ? c : a))
-                                    : (before(d, a, c) ? a : (before(d, b, c) ? c : b));
-        int i = from - 1, j = to;
-        while (true) { // Hoare's partition
-            while (before(d, node[++i], value))
-                ;
-            while (before(d, value, node[--j]))
-                ;
-            if (i >= j)
-                break;
-            int swap = node[i];
-            node[i] = node[j], node[j] = swap;
+    double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int k = p.from; k < p.to; ++k)
+        for (int c = 0; c < 3; ++c) {
+            double x = d->place[d->node[k]][c];
+            lo[c] = x < lo[c] ? x : lo[c], hi[c] = x > hi[c] ? x : hi[c];
         }
-        if (j >= middle)
-            to = j + 1;
-        else
-            from = j + 1;
-    }
-}
-
-static int by_key(const void* a, const void* b, void* context)
-{
-    int x = *(const int*)a, y = *(const int*)b;
-    return before(context, x, y) ? -1 : x != y;
-}
-
-// Sorts [from, to) along `direction` and finds the cut between 40 and 60 % with the smallest separator, by sweeping: nodes before
-// the cut with neighbours behind it. Returns its size, sets *middle. Places that rounding or noise has moved off
-// their row would make the very median a ragged cut.
-static int cut_along(dissection* d, int from, int to, const double direction[3], int* middle)
-{
-    int count = to - from, lo = from + (int)(0.4 * count), hi = from + (int)(0.6 * count);
-    for (int k = from; k < to; ++k) {
-        const double* x = d->place[d->node[k]];
-        d->key[d->node[k]] = x[0] * direction[0] + x[1] * direction[1] + x[2] * direction[2];
-    }
-    select_median(d, from, to, lo);
-    select_median(d, lo, to, hi);
-    qsort_r(d->node + lo, (size_t)(hi - lo), sizeof *d->node, by_key, d);
-    for (int k = from; k < to; ++k) {
-        d->side[d->node[k]] = k < lo ? 1 : 2;
-        d->ahead[d->node[k]] = 0;
-    }
-    int size = 0, least = count + 1;
-    for (int k = lo; k < to; ++k)
-        for (int e = d->start[d->node[k]]; e < d->start[d->node[k] + 1]; ++e)
-            size += d->side[d->neighbour[e]] == 1 && d->ahead[d->neighbour[e]]++ == 0;
-    for (int k = lo; k < hi; ++k) { // move node k before the cut
-        int v = d->node[k], ahead = 0;
-        d->side[v] = 1;
-        for (int e = d->start[v]; e < d->start[v + 1]; ++e) {
-            int w = d->neighbour[e];
-            ahead += d->side[w] == 2;
-            if (d->side[w] == 1 && w != v && --d->ahead[w] == 0)
-                --size;
-        }
-        d->ahead[v] = ahead;
-        size += ahead > 0;
-        if (size < least)
-            least = size, *middle = k + 1;
-    }
-    for (int k = from; k < to; ++k)
-        d->side[d->node[k]] = k < *middle ? 1 : 2;
-    return least;
-}
-
-static void dissect(dissection* d, int from, int to)
-{
-    int count = to - from;
-    if (count <= LEAF) {
-        for (int k = from; k < to; ++k)
-            d->set[d->node[k]] = d->sets;
-        ++d->sets;
-        return;
-    }
-    double lo[3], hi[3];
-    for (int c = 0; c < 3; ++c)
-        lo[c] = INFINITY, hi[c] = -INFINITY;
-    for (int k = from; k < to; ++k)
-        for (int c = 0; c < 3; ++c)
-            lo[c] = fmin(lo[c], d->place[d->node[k]][c]), hi[c] = fmax(hi[c], d->place[d->node[k]][c]);
     int axis[3] = {0, 1, 2}; // by extent, largest first
     for (int a = 0; a < 2; ++a)
         for (int b = 2; b > a; --b)
@@ -120,50 +60,210 @@ static void dissect(dissection* d, int from, int to)
                 int swap = axis[b];
                 axis[b] = axis[b - 1], axis[b - 1] = swap;
             }
-    int middle = from, best = -1, least = count + 1;
-    double directions[DIRECTIONS][3] = {{0}};
-    int tried = count > 5000 ? DIRECTIONS : 2, stride = DIRECTIONS / tried;
-    for (int k = 0; k < DIRECTIONS; k += stride) {
-        directions[k][axis[0]] = cos(k * AX_PI / DIRECTIONS);
-        directions[k][axis[1]] = sin(k * AX_PI / DIRECTIONS);
-        int size = cut_along(d, from, to, directions[k], &middle);
-        if (size < least)
-            least = size, best = k;
-    }
-    if (best != DIRECTIONS - stride)
-        cut_along(d, from, to, directions[best], &middle);
-    // separator: first-half nodes that touch the second half, moved to the end of the first half
-    int cut = middle;
-    for (int k = from; k < cut;) {
-        int v = d->node[k];
-        bool touches = false;
-        for (int e = d->start[v]; e < d->start[v + 1] && !touches; ++e)
-            touches = d->side[d->neighbour[e]] == 2;
-        if (touches) {
-            --cut;
-            d->node[k] = d->node[cut], d->node[cut] = v;
-        } else
-            ++k;
-    }
-    for (int k = from; k < to; ++k)
-        d->side[d->node[k]] = 0;
-    if (cut == from) { // no part is left to dissect: a dense cluster
-        for (int k = from; k < to; ++k)
-            d->set[d->node[k]] = d->sets;
-        ++d->sets;
+    memset(cuts, 0, (size_t)tried * sizeof *cuts);
+    if (!(hi[axis[0]] - lo[axis[0]] > 0 && hi[axis[0]] - lo[axis[0]] < INFINITY))
         return;
+    double bins = 16 + 8 * sqrt(p.to - p.from);
+    for (int k = 0; k < tried; ++k) {
+        double angle = k * AX_PI / tried, length = 0, *direction = cuts[k].direction;
+        direction[axis[0]] = k * 2 == tried ? 0 : cos(angle), direction[axis[1]] = k == 0 ? 0 : sin(angle);
+        for (int c = 0; c < 3; ++c) {
+            cuts[k].low += direction[c] * (direction[c] > 0 ? lo[c] : hi[c]);
+            length += fabs(direction[c]) * (hi[c] - lo[c]);
+        }
+        cuts[k].scale = length > 0 ? bins / length : 0;
     }
-    dissect(d, from, cut);
-    dissect(d, middle, to);
-    for (int k = cut; k < middle; ++k)
-        d->set[d->node[k]] = d->sets;
-    ++d->sets;
 }
 
-void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], int* order)
+// Sweeps one direction for the smallest separator.
+static void sweep(const dissection* d, part p, cut* c)
+{
+    c->size = INT32_MAX;
+    if (!(c->scale > 0))
+        return;
+    int count = p.to - p.from, bins = (int)(16 + 8 * sqrt(count)) + 2;
+    int *held = AX_NEW0(int, 2 * bins), *change = held + bins;
+    for (int k = p.from; k < p.to; ++k)
+        ++held[(int)along(c, d->place[d->node[k]])];
+    int first = 0, last, before = held[0];
+    while (before < 0.4 * count)
+        before += held[++first];
+    for (last = first; last + 1 < bins && before + held[last + 1] <= 0.6 * count;)
+        before += held[++last];
+    for (int k = p.from; k < p.to; ++k) {
+        int v = d->node[k], farthest = 0;
+        double key = along(c, d->place[v]);
+        if (key >= last + 1 || key + d->reach[v] * c->scale < first)
+            continue; // no cut of the window lies between this node and a neighbour
+        for (int e = d->start[v]; e < d->start[v + 1]; ++e) {
+            int w = d->neighbour[e];
+            int bin = d->part_of[w] == p.from ? (int)along(c, d->place[w]) : 0;
+            farthest = bin > farthest ? bin : farthest;
+        }
+        int own = key < first ? first : (int)key;
+        if (farthest > own) { // in the separator of cuts own .. farthest - 1
+            ++change[own];
+            --change[farthest];
+        }
+    }
+    for (int bin = first, size = 0; bin <= last; ++bin) {
+        size += change[bin];
+        if (size < c->size)
+            c->size = size, c->bin = bin;
+    }
+    ax_free(held);
+}
+
+// Puts the nodes before the cut first, then those behind it, then the separator. False if either side would be empty.
+static bool split(dissection* d, part p, const cut* c, part halves[2])
+{
+    if (c->size == INT32_MAX)
+        return false;
+    int low = p.from, high = p.from, separator = p.to;
+    for (int k = p.from; k < p.to; ++k) {
+        int v = d->node[k];
+        double key = along(c, d->place[v]);
+        bool behind = (int)key > c->bin, touches = false;
+        for (int e = d->start[v]; !behind && !touches && key + d->reach[v] * c->scale > c->bin && e < d->start[v + 1];
+             ++e) {
+            int w = d->neighbour[e];
+            touches = d->part_of[w] == p.from && (int)along(c, d->place[w]) > c->bin;
+        }
+        if (behind)
+            d->scratch[high++] = v;
+        else if (touches)
+            d->scratch[--separator] = v;
+        else
+            d->node[low++] = v;
+    }
+    halves[0] = (part){p.from, low};
+    halves[1] = (part){low, low + high - p.from};
+    memcpy(d->node + low, d->scratch + p.from, (size_t)(high - p.from) * sizeof *d->node);
+    for (int k = 0; k < p.to - separator; ++k)
+        d->node[halves[1].to + k] = d->scratch[p.to - 1 - k];
+    if (low == p.from || high == p.from)
+        return false;
+    for (int k = halves[1].from; k < halves[1].to; ++k)
+        d->part_of[d->node[k]] = halves[1].from;
+    for (int k = halves[1].to; k < p.to; ++k)
+        d->part_of[d->node[k]] = -1;
+    return true;
+}
+
+// Exact minimum degree on bit sets: the nodes of the leaf, then their neighbours outside, which are eliminated later.
+typedef uint64_t bits __attribute__((vector_size(32)));
+enum { WORDS = 4, SET = 64 * WORDS };
+
+static inline int size_of(bits set)
+{
+    int size = 0;
+    for (int k = 0; k < WORDS; ++k)
+        size += __builtin_popcountll(set[k]);
+    return size;
+}
+
+static void order_leaf(dissection* d, part p)
+{
+    int count = p.to - p.from, outside[SET - LEAF], outsiders = 0, degree[LEAF], order[LEAF];
+    bits adjacent[LEAF];
+    for (int k = 0; k < count; ++k)
+        d->part_of[d->node[p.from + k]] = p.from + k;
+    for (int k = 0; k < count; ++k) {
+        int v = d->node[p.from + k];
+        adjacent[k] = (bits){0};
+        for (int e = d->start[v]; e < d->start[v + 1]; ++e) {
+            int w = d->neighbour[e], at;
+            if (d->part_of[w] >= p.from && d->part_of[w] < p.to)
+                at = d->part_of[w] - p.from;
+            else {
+                for (at = 0; at < outsiders && outside[at] != w; ++at)
+                    ;
+                if (at == outsiders && outsiders < SET - LEAF)
+                    outside[outsiders++] = w;
+                if (at == SET - LEAF)
+                    continue; // more than a set holds: degrees are then a little too small
+                at += LEAF;
+            }
+            adjacent[k][at / 64] |= (uint64_t)1 << at % 64;
+        }
+        degree[k] = size_of(adjacent[k]);
+    }
+    for (int k = 0; k < count; ++k) {
+        int least = 0;
+        for (int v = 1; v < count; ++v)
+            least = degree[v] < degree[least] ? v : least;
+        order[k] = d->node[p.from + least];
+        degree[least] = INT32_MAX;
+        for (int word = 0; word < LEAF / 64; ++word)
+            for (uint64_t rest = adjacent[least][word]; rest; rest &= rest - 1) {
+                int u = 64 * word + __builtin_ctzll(rest);
+                adjacent[u] |= adjacent[least];
+                adjacent[u][least / 64] &= ~((uint64_t)1 << least % 64);
+                adjacent[u][u / 64] &= ~((uint64_t)1 << u % 64);
+                degree[u] = size_of(adjacent[u]);
+            }
+    }
+    memcpy(d->node + p.from, order, (size_t)count * sizeof *order);
+}
+
+static const cut* best_of(const cut* cuts, int tried)
+{
+    const cut* best = cuts;
+    for (int k = 1; k < tried; ++k)
+        best = cuts[k].size < best->size ? cuts + k : best;
+    return best;
+}
+
+static void dissect(dissection* d, part p)
+{
+    if (p.to - p.from <= LEAF) {
+        order_leaf(d, p);
+        return;
+    }
+    cut cuts[2];
+    part halves[2];
+    directions(d, p, 2, cuts);
+    for (int k = 0; k < 2; ++k)
+        sweep(d, p, cuts + k);
+    if (!split(d, p, best_of(cuts, 2), halves)) {
+        atomic_store(&d->dense, true);
+        return;
+    }
+    dissect(d, halves[0]);
+    dissect(d, halves[1]);
+}
+
+static void dissect_one(void* context, int k)
+{
+    dissection* d = context;
+    dissect(d, d->parts[k]);
+}
+
+static void aim_one(void* context, int k)
+{
+    dissection* d = context;
+    directions(d, d->parts[k], DIRECTIONS, d->cuts + k * DIRECTIONS);
+}
+
+static void sweep_one(void* context, int k)
+{
+    dissection* d = context;
+    sweep(d, d->parts[k / DIRECTIONS], d->cuts + k);
+}
+
+static void split_one(void* context, int k)
+{
+    dissection* d = context;
+    if (!split(d, d->parts[k], best_of(d->cuts + k * DIRECTIONS, DIRECTIONS), d->halves[k])) {
+        memset(d->halves[k], 0, sizeof d->halves[k]);
+        atomic_store(&d->dense, true);
+    }
+}
+
+// All neighbours of every node.
+static void list_neighbours(const ax_sparse* matrix, int* start, int* neighbour)
 {
     int n = matrix->n;
-    int *start = AX_NEW0(int, n + 2), *neighbour = AX_NEW(int, 2 * (size_t)matrix->start[n]);
     for (int j = 0; j < n; ++j)
         for (int k = matrix->start[j]; k < matrix->start[j + 1]; ++k)
             if (matrix->row[k] != j)
@@ -176,31 +276,95 @@ void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], int* o
                 neighbour[start[j + 1]++] = matrix->row[k];
                 neighbour[start[matrix->row[k] + 1]++] = j;
             }
-    dissection d = {.start = start,
-                    .neighbour = neighbour,
-                    .place = place,
-                    .node = AX_NEW(int, n),
-                    .side = AX_NEW0(int, n),
-                    .ahead = AX_NEW(int, n),
-                    .set = AX_NEW(int, n),
-                    .key = AX_NEW(double, n)};
-    for (int v = 0; v < n; ++v)
-        d.node[v] = v;
-    dissect(&d, 0, n);
+}
 
+static void measure_reach(void* context, int task)
+{
+    dissection* d = context;
+    for (int v = d->parts[task].from; v < d->parts[task].to; ++v) {
+        double reach = 0;
+        for (int e = d->start[v]; e < d->start[v + 1]; ++e) {
+            double length = ax_distance3(d->place[v], d->place[d->neighbour[e]]);
+            reach = length > reach ? length : reach;
+        }
+        d->reach[v] = 1.000001 * reach; // bins of both ends are rounded
+    }
+}
+
+// Without places that tell its nodes apart a matrix is ordered by its graph alone.
+static void order_by_degree(const ax_sparse* matrix, int* order)
+{
     cholmod_common common;
     cholmod_start(&common);
     common.print = 0;
     cholmod_sparse a = ax_cholmod_view(matrix);
-    int sound = cholmod_camd(&a, NULL, 0, d.set, order, &common);
+    int sound = cholmod_amd(&a, NULL, 0, order, &common);
     cholmod_finish(&common);
     assert(sound);
     (void)sound;
-    ax_free(start);
-    ax_free(neighbour);
-    ax_free(d.node);
-    ax_free(d.side);
-    ax_free(d.set);
-    ax_free(d.ahead);
-    ax_free(d.key);
+}
+
+typedef struct part_list {
+    int count, capacity;
+    part* parts;
+} part_list;
+
+static void append(part_list* list, part p)
+{
+    if (list->count == list->capacity) {
+        list->capacity = 2 * list->capacity + 64;
+        list->parts = ax_realloc(list->parts, (size_t)list->capacity, sizeof *list->parts);
+    }
+    list->parts[list->count++] = p;
+}
+
+void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], ax_pool* pool, int* order)
+{
+    int n = matrix->n, *start = AX_NEW0(int, n + 2), *neighbour = AX_NEW(int, 2 * (size_t)matrix->start[n]);
+    list_neighbours(matrix, start, neighbour);
+    dissection d = {.start = start,
+                    .neighbour = neighbour,
+                    .place = place,
+                    .reach = AX_NEW(double, n),
+                    .node = order,
+                    .part_of = AX_NEW0(int, n),
+                    .scratch = AX_NEW(int, n)};
+    part_list large = {0}, whole = {0};
+    for (int v = 0; v < n; ++v)
+        order[v] = v;
+    for (int from = 0; from < n; from += WHOLE)
+        append(&whole, (part){from, from + WHOLE < n ? from + WHOLE : n});
+    d.parts = whole.parts;
+    ax_pool_run(pool, measure_reach, &d, whole.count);
+    whole.count = 0;
+
+    // level by level while parts are large, so that all threads have work: every direction of every part is a task
+    append(n > WHOLE ? &large : &whole, (part){0, n});
+    while (large.count) {
+        d.parts = large.parts;
+        d.cuts = AX_NEW(cut, large.count * DIRECTIONS);
+        d.halves = ax_alloc((size_t)large.count, sizeof *d.halves);
+        ax_pool_run(pool, aim_one, &d, large.count);
+        ax_pool_run(pool, sweep_one, &d, large.count * DIRECTIONS);
+        ax_pool_run(pool, split_one, &d, large.count);
+        part_list halved = {0};
+        for (int k = 0; k < 2 * large.count; ++k) {
+            part half = d.halves[k / 2][k % 2];
+            append(half.to - half.from > WHOLE ? &halved : &whole, half);
+        }
+        ax_free(large.parts);
+        ax_free(d.cuts);
+        ax_free(d.halves);
+        large = halved;
+        if (d.dense)
+            large.count = 0;
+    }
+    d.parts = whole.parts;
+    if (!d.dense)
+        ax_pool_run(pool, dissect_one, &d, whole.count);
+    if (d.dense)
+        order_by_degree(matrix, order);
+    void* blocks[] = {start, neighbour, d.reach, d.part_of, d.scratch, large.parts, whole.parts};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+        ax_free(blocks[k]);
 }

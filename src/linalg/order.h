@@ -2,8 +2,9 @@
 // graph partitioner and many times faster.
 #pragma once
 
+#include "base/pool.h"
 #include "linalg/sparse.h"
 
 // Fills order[k] = node eliminated k-th. `matrix` gives the pattern over n nodes, `place` their coordinates (any that keep
-// neighbours near: a flat or a lattice state).
-void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], int* order);
+// neighbours near: a flat or a lattice state). NULL pool: one thread, the same order.
+void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], ax_pool* pool, int* order);

@@ -502,7 +502,7 @@ bool ax_solver_prepare(ax_solver* s)
     ax_sparse matrix = assemble(s);
     int* order = AX_NEW(int, s->n);
     if (s->pattern_changed)
-        ax_order_by_place(&matrix, (const double(*)[3])s->start, order);
+        ax_order_by_place(&matrix, (const double(*)[3])s->start, s->pool, order);
     else
         memcpy(order, s->order, (size_t)s->n * sizeof *order);
     ax_cholesky* factor = ax_cholesky_analyse_ordered(&matrix, AX_FACTOR_PANELS, order);
