@@ -200,9 +200,8 @@ static void panels_solve_what_was_factorised(void** state)
         ax_order_by_place(&matrix, (const double(*)[3])g.place, NULL, order);
         for (int v = 0; v < g.points; ++v)
             assert_int_equal(seen[order[v]]++, 0); // a permutation
-        ax_cholesky* factor = ax_cholesky_analyse_ordered(&matrix, AX_FACTOR_PANELS, order);
-        assert_true(ax_cholesky_factor(factor, &matrix));
-        ax_panels* panels = ax_panels_make(factor);
+        ax_panels* panels = ax_panels_analyse(&matrix, order);
+        assert_true(ax_panels_factor(panels, &matrix, NULL));
         ax_vec4* x = ax_alloc_aligned((size_t)g.points, sizeof *x);
         ax_random random = {9};
         for (int v = 0; v < g.points; ++v)
@@ -222,7 +221,6 @@ static void panels_solve_what_was_factorised(void** state)
         for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
             ax_free(blocks[k]);
         ax_panels_free(panels);
-        ax_cholesky_free(factor);
         ax_sparse_free(&matrix);
         free_grid(&g);
     }

@@ -34,13 +34,11 @@ static void factorise(ax_admm* a, ax_entries* entries)
     for (int u = 0; u < m->unknowns; ++u)
         memcpy(place[u], m->rest[m->hinge[u]], sizeof *m->rest);
     ax_order_by_place(&laplacian, (const double(*)[3])place, NULL, order);
-    ax_cholesky* factor = ax_cholesky_analyse_ordered(&laplacian, AX_FACTOR_PANELS, order);
-    ax_cholesky_factor(factor, &laplacian); // an edge Laplacian plus 1e-9 is positive definite
-    a->factor = ax_panels_make(factor);
+    a->factor = ax_panels_analyse(&laplacian, order);
+    ax_panels_factor(a->factor, &laplacian, NULL); // an edge Laplacian plus 1e-9 is positive definite
     a->row = AX_NEW(int, m->unknowns);
     for (int k = 0; k < m->unknowns; ++k)
         a->row[ax_panels_order(a->factor)[k]] = k;
-    ax_cholesky_free(factor);
     ax_sparse_free(&laplacian);
     ax_free(place);
     ax_free(order);

@@ -10,7 +10,6 @@ struct ax_cholesky {
     cholmod_common common;
     cholmod_factor* factor;
     cholmod_dense *y, *e, *x; // workspace kept between solves
-    ax_factor_kind kind;
     ax_cholesky_counters counters;
 };
 
@@ -35,11 +34,6 @@ static void hold_to_one_thread(void)
 
 ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind)
 {
-    return ax_cholesky_analyse_ordered(matrix, kind, NULL);
-}
-
-ax_cholesky* ax_cholesky_analyse_ordered(const ax_sparse* matrix, ax_factor_kind kind, const int* order)
-{
     hold_to_one_thread();
     ax_cholesky* factor = AX_NEW0(ax_cholesky, 1);
     cholmod_common* common = &factor->common;
@@ -48,9 +42,7 @@ ax_cholesky* ax_cholesky_analyse_ordered(const ax_sparse* matrix, ax_factor_kind
     common->try_catch = 1;
     common->quick_return_if_not_posdef = 1;
     common->final_ll = 1;
-    static const int modes[] = {[AX_FACTOR_SUPERNODAL] = CHOLMOD_SUPERNODAL,
-                                [AX_FACTOR_ONCE] = CHOLMOD_AUTO,
-                                [AX_FACTOR_PANELS] = CHOLMOD_SUPERNODAL};
+    static const int modes[] = {[AX_FACTOR_SUPERNODAL] = CHOLMOD_SUPERNODAL, [AX_FACTOR_ONCE] = CHOLMOD_AUTO};
     common->supernodal = modes[kind];
     // Measured on Laplacians of surfaces: below some 80 operations per entry (10,000 to 20,000 unknowns) columns are quicker
     // than dense blocks; CHOLMOD's own choice is 40.
@@ -58,16 +50,11 @@ ax_cholesky* ax_cholesky_analyse_ordered(const ax_sparse* matrix, ax_factor_kind
     // Nested dissection (METIS) saves at most a fifth of the factorisation on surface meshes of up to 500,000 vertices, but
     // takes four to ten times as long as AMD to compute: 2.1 to 3 s against 0.2 to 0.7 s there, for a factorisation of 0.7 s.
     common->nmethods = 1;
-    common->method[0].ordering = order ? CHOLMOD_GIVEN : CHOLMOD_AMD;
+    common->method[0].ordering = CHOLMOD_AMD;
     common->postorder = 1;
-    if (kind ==
-        AX_FACTOR_PANELS) // repeated solves are bound by memory: only supernodes of up to four columns are merged, which
-        for (int k = 0; k < 3; ++k) // halves the factorisation and stores no zeros that a solve would notice
-            common->nrelax[k] = k == 0 ? 4 : 0, common->zrelax[k] = 0;
     cholmod_sparse a = ax_cholmod_view(matrix);
-    factor->factor = cholmod_analyze_p(&a, (int*)order, NULL, 0, common);
+    factor->factor = cholmod_analyze(&a, common);
     assert(factor->factor);
-    factor->kind = kind;
     factor->counters.analyses = 1;
     return factor;
 }
@@ -115,18 +102,4 @@ void ax_cholesky_solve(ax_cholesky* factor, const double* b, double* x, int colu
 ax_cholesky_counters ax_cholesky_count(const ax_cholesky* factor)
 {
     return factor->counters;
-}
-
-ax_supernodes ax_cholesky_supernodes(const ax_cholesky* factor)
-{
-    const cholmod_factor* f = factor->factor;
-    assert(factor->kind == AX_FACTOR_PANELS && f->is_super && f->xtype == CHOLMOD_REAL);
-    return (ax_supernodes){.n = (int)f->n,
-                           .count = (int)f->nsuper,
-                           .column = f->super,
-                           .row_start = f->pi,
-                           .row = f->s,
-                           .value_start = f->px,
-                           .order = f->Perm,
-                           .value = f->x};
 }

@@ -9,13 +9,10 @@ typedef struct ax_cholesky ax_cholesky;
 typedef enum ax_factor_kind {
     AX_FACTOR_SUPERNODAL, // dense blocks: best when factored often
     AX_FACTOR_ONCE,       // whichever is quicker for one factorisation and a few solves, by the work per entry
-    AX_FACTOR_PANELS,     // exact dense blocks without fill of their own, to be repacked by ax_panels_make
 } ax_factor_kind;
 
 // Orders and analyses the pattern of `matrix` (values are not read). Never fails on a sound pattern.
 ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind);
-// The same in a given elimination order (n entries, order[k] is eliminated k-th up to a postorder of the tree).
-ax_cholesky* ax_cholesky_analyse_ordered(const ax_sparse* matrix, ax_factor_kind kind, const int* order);
 void ax_cholesky_free(ax_cholesky* factor);
 
 // Numerical factorisation of a matrix with the analysed pattern. False if it is not positive definite.
@@ -29,12 +26,3 @@ typedef struct ax_cholesky_counters {
     double entries; // in the factor
 } ax_cholesky_counters;
 ax_cholesky_counters ax_cholesky_count(const ax_cholesky* factor);
-
-// The numerical factor of kind AX_FACTOR_PANELS as it is, borrowed: supernode k has columns column[k] .. column[k + 1] - 1 and the
-// rows row[row_start[k]] .. (its own columns first), values column by column from value_start[k].
-typedef struct ax_supernodes {
-    int n, count;
-    const int *column, *row_start, *row, *value_start, *order;
-    const double* value;
-} ax_supernodes;
-ax_supernodes ax_cholesky_supernodes(const ax_cholesky* factor);

@@ -1,5 +1,7 @@
 #include "linalg/sparse.h"
 
+#include "base/bucket.h"
+
 #include <assert.h>
 #include <string.h>
 
@@ -74,29 +76,12 @@ void ax_entries_add(ax_entries* entries, int row, int column, double value)
     entries->value[k] = value;
 }
 
-// Stable counting sort of item numbers by key: start (keys + 1) and the items in order.
-static void bucket(int items, int keys, const int* key, const int* order, int* start, int* sorted)
-{
-    memset(start, 0, (size_t)(keys + 1) * sizeof *start);
-    for (int k = 0; k < items; ++k)
-        ++start[key[k] + 1];
-    for (int k = 0; k < keys; ++k)
-        start[k + 1] += start[k];
-    for (int k = 0; k < items; ++k) {
-        int item = order ? order[k] : k;
-        sorted[start[key[item]]++] = item;
-    }
-    for (int k = keys; k > 0; --k)
-        start[k] = start[k - 1];
-    start[0] = 0;
-}
-
 ax_sparse ax_entries_sparse(ax_entries* entries, int n)
 {
     int count = entries->count;
     int *by_row = AX_NEW(int, count), *sorted = AX_NEW(int, count), *start = AX_NEW(int, n + 1);
-    bucket(count, n, entries->row, NULL, start, by_row); // two stable passes: by row, then by column
-    bucket(count, n, entries->column, by_row, start, sorted);
+    ax_bucket_sort(count, n, entries->row, NULL, start, by_row); // two stable passes: by row, then by column
+    ax_bucket_sort(count, n, entries->column, by_row, start, sorted);
 
     ax_sparse matrix = {.n = n, .start = AX_NEW(int, n + 1), .row = AX_NEW(int, count), .value = AX_NEW(double, count)};
     int used = 0;
@@ -132,8 +117,8 @@ ax_blocks ax_blocks_make(int n, int size, int pair_count, const int (*pairs)[2])
             high[count++] = pairs[k][0] < pairs[k][1] ? pairs[k][1] : pairs[k][0];
         }
     int *by_row = AX_NEW(int, count), *sorted = AX_NEW(int, count), *bounds = AX_NEW(int, n + 1);
-    bucket(count, n, high, NULL, bounds, by_row);
-    bucket(count, n, low, by_row, bounds, sorted);
+    ax_bucket_sort(count, n, high, NULL, bounds, by_row);
+    ax_bucket_sort(count, n, low, by_row, bounds, sorted);
 
     ax_blocks blocks = {.n = n, .size = size, .start = AX_NEW(int, n + 1), .row = AX_NEW(int, count)};
     int used = 0;

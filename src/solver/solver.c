@@ -1,10 +1,10 @@
 #include "solver/solver.h"
 
+#include "base/bucket.h"
 #include "base/clock.h"
 #include "linalg/order.h"
 
 #include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { CHUNK = 64, POINTS_PER_TASK = 4096 }; // blocks of constraints and points that one task takes
@@ -411,34 +411,24 @@ static void reorder(ax_solver* s, const int* order)
     s->position = position;
 }
 
-typedef struct keyed {
-    int key, constraint;
-} keyed;
-
-static int by_key(const void* a, const void* b)
-{
-    const keyed *x = a, *y = b;
-    return x->key != y->key ? (x->key > y->key) - (x->key < y->key) : x->constraint - y->constraint;
-}
-
 // Sorts the constraints of a group along the elimination order, and carries parameters and multipliers with them.
 static void sort_group(ax_solver* s, group* g)
 {
     int n = g->points_each;
     size_t lanes = (size_t)g->type->lanes, rows = (size_t)g->rows, blocks = (size_t)g->blocks;
-    keyed* sorted = AX_NEW(keyed, g->count);
+    int *first = AX_NEW(int, g->count), *start = AX_NEW(int, s->n + 1), *sorted = AX_NEW(int, g->count);
     for (int c = 0; c < g->count; ++c) {
-        sorted[c] = (keyed){.key = s->n, .constraint = c};
+        first[c] = s->n;
         for (int k = 0; k < n; ++k) {
             int at = s->position[g->points[c * n + k]];
-            sorted[c].key = at < sorted[c].key ? at : sorted[c].key;
+            first[c] = at < first[c] ? at : first[c];
         }
     }
-    qsort(sorted, (size_t)g->count, sizeof *sorted, by_key);
+    ax_bucket_sort(g->count, s->n, first, NULL, start, sorted);
     ax_lane* parameter = ax_alloc_aligned(blocks * (lanes ? lanes : 1), sizeof *parameter);
     ax_lane3* dual = ax_alloc_aligned(blocks * rows, sizeof *dual);
     for (int slot = 0; slot < g->blocks * AX_W; ++slot) {
-        int c = sorted[slot < g->count ? slot : g->count - 1].constraint, old = g->slot[c];
+        int c = sorted[slot < g->count ? slot : g->count - 1], old = g->slot[c];
         size_t b = (size_t)slot / AX_W, from = (size_t)old / AX_W;
         int l = slot % AX_W, was = old % AX_W;
         for (size_t k = 0; k < lanes; ++k)
@@ -450,11 +440,13 @@ static void sort_group(ax_solver* s, group* g)
             g->index[(b * (size_t)n + (size_t)k) * AX_W + (size_t)l] = s->position[g->points[c * n + k]];
     }
     for (int slot = 0; slot < g->count; ++slot)
-        g->slot[sorted[slot].constraint] = slot;
+        g->slot[sorted[slot]] = slot;
     ax_free(g->parameter);
     ax_free(g->dual);
     g->parameter = parameter;
     g->dual = dual;
+    ax_free(first);
+    ax_free(start);
     ax_free(sorted);
 }
 
@@ -500,31 +492,25 @@ bool ax_solver_prepare(ax_solver* s)
         return true;
     double start = ax_seconds();
     ax_sparse matrix = assemble(s);
-    int* order = AX_NEW(int, s->n);
-    if (s->pattern_changed)
+    if (s->pattern_changed) {
+        int* order = AX_NEW(int, s->n);
         ax_order_by_place(&matrix, (const double(*)[3])s->start, s->pool, order);
-    else
-        memcpy(order, s->order, (size_t)s->n * sizeof *order);
-    ax_cholesky* factor = ax_cholesky_analyse_ordered(&matrix, AX_FACTOR_PANELS, order);
-    bool sound = ax_cholesky_factor(factor, &matrix);
-    ++s->counters.factorisations;
-    s->counters.analyses += s->pattern_changed;
-    if (sound) {
         ax_panels_free(s->panels);
-        s->panels = ax_panels_make(factor);
+        s->panels = ax_panels_analyse(&matrix, order);
         s->counters.factor_entries = ax_panels_entries(s->panels);
         s->counters.bytes_per_solve = ax_panels_bytes(s->panels);
-        if (s->pattern_changed) {
-            reorder(s, ax_panels_order(s->panels));
-            for (int k = 0; k < s->group_count; ++k)
-                sort_group(s, s->groups + k);
-            list_incidence(s);
-        }
-        s->pattern_changed = s->values_changed = false;
+        reorder(s, ax_panels_order(s->panels));
+        for (int k = 0; k < s->group_count; ++k)
+            sort_group(s, s->groups + k);
+        list_incidence(s);
+        ++s->counters.analyses;
+        s->pattern_changed = false;
+        ax_free(order);
     }
-    ax_cholesky_free(factor);
+    bool sound = ax_panels_factor(s->panels, &matrix, s->pool);
+    ++s->counters.factorisations;
+    s->values_changed = !sound;
     ax_sparse_free(&matrix);
-    ax_free(order);
     s->counters.seconds_prepare += ax_seconds() - start;
     return sound;
 }

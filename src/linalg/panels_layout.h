@@ -1,0 +1,55 @@
+// How a factor lies in memory: shared by its analysis, factorisation and solve.
+#pragma once
+
+#include "linalg/panels.h"
+
+enum { AX_PANEL_WIDTH = 4, AX_PANEL_PARTS = 8 };
+
+// Up to four columns of a supernode: their triangle (column by column, diagonal as its reciprocal), then the rows below, row by
+// row. The panels of a supernode share its list of rows.
+typedef struct ax_panel {
+    int first, width, rows; // columns first .. first + width - 1, rows below them
+    int index;              // of the first row below, into `index`
+    size_t value;           // of the triangle; rows * width entries follow it
+} ax_panel;
+
+// Columns of equal pattern. Rows: its own columns after the first, then those below.
+typedef struct ax_supernode {
+    int first, width, rows; // rows below its own
+    int index, panel;       // first of its own
+    int parent, sibling;    // -1: none
+    int child;              // the last one, from which siblings lead to earlier ones
+} ax_supernode;
+
+// Columns are numbered part by part, the top last.
+struct ax_panels {
+    int n, panel_count, node_count;
+    ax_panel* panels;
+    ax_supernode* nodes;
+    int* index; // rows; in a part, rows of the top are those of the part's own buffer behind the n rows
+    double* value;
+    size_t index_count, value_count;
+    int* order;
+    int parts, top_first;                                               // columns from top_first on are the top's
+    int part_column[AX_PANEL_PARTS + 2], part_node[AX_PANEL_PARTS + 2]; // where each part begins, then the top
+    int part_panel[AX_PANEL_PARTS + 2];
+    size_t stack_size[AX_PANEL_PARTS + 1], front_size[AX_PANEL_PARTS + 1]; // doubles that factorising a part needs
+    ax_vec4* work;                                                         // n rows and parts x (n - top_first) buffers
+};
+
+static inline int ax_panels_top(const ax_panels* s)
+{
+    return s->n - s->top_first;
+}
+
+// Rows of a front as stored: a whole number of vectors.
+static inline size_t ax_front_stride(const ax_supernode* node)
+{
+    return ((size_t)(node->width + node->rows) + 3) / 4 * 4;
+}
+
+// Entries of what a front leaves for its parent: the lower triangle of its rows below.
+static inline size_t ax_update_size(const ax_supernode* node)
+{
+    return (size_t)node->rows * ((size_t)node->rows + 1) / 2;
+}
