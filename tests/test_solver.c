@@ -183,47 +183,103 @@ static void a_point_bound_by_nothing_is_reported(void** state)
     ax_solver_free(s);
 }
 
-// Panels against the residual of the system, on random sparse matrices with and without a parallel top.
+static ax_sparse grid_laplacian(const grid* g, double diagonal)
+{
+    ax_entries entries = {0};
+    for (int v = 0; v < g->points; ++v)
+        ax_entries_add(&entries, v, v, diagonal);
+    for (int e = 0; e < g->edges; ++e)
+        ax_entries_add(&entries, g->edge[e][0], g->edge[e][1], -1);
+    return ax_entries_sparse(&entries, g->points);
+}
+
+// Orders, factorises and solves with `pool` from places `place`, and compares with the residual of the system. Returns the entries.
+static double solve_by_panels(const grid* g, const double (*place)[3], ax_pool* pool, ax_vec4* x)
+{
+    ax_sparse matrix = grid_laplacian(g, 6.5);
+    int *order = AX_NEW(int, g->points), *seen = AX_NEW0(int, g->points);
+    ax_order_by_place(&matrix, place, pool, order);
+    for (int v = 0; v < g->points; ++v)
+        assert_int_equal(seen[order[v]]++, 0); // a permutation
+    ax_panels* panels = ax_panels_analyse(&matrix, order);
+    assert_true(ax_panels_factor(panels, &matrix, pool));
+    ax_random random = {9};
+    for (int v = 0; v < g->points; ++v)
+        for (int c = 0; c < 4; ++c)
+            x[v][c] = ax_random_uniform(&random, -1, 1);
+    ax_vec4* b = ax_copy(x, (size_t)g->points, sizeof *b);
+    ax_panels_solve(panels, pool, x);
+    double *column = AX_NEW(double, g->points), *product = AX_NEW(double, g->points);
+    for (int c = 0; c < 4; ++c) {
+        for (int k = 0; k < g->points; ++k)
+            column[ax_panels_order(panels)[k]] = x[k][c];
+        ax_sparse_multiply(&matrix, column, product, 1);
+        for (int k = 0; k < g->points; ++k)
+            assert_near(product[ax_panels_order(panels)[k]], b[k][c], 1e-12);
+    }
+    double entries = ax_panels_entries(panels);
+    void* blocks[] = {order, seen, b, column, product};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+        ax_free(blocks[k]);
+    ax_panels_free(panels);
+    ax_sparse_free(&matrix);
+    return entries;
+}
+
+// With and without a parallel top and shared fronts; two threads give the bits of one.
 static void panels_solve_what_was_factorised(void** state)
 {
     (void)state;
     const int sides[] = {1, 2, 3, 7, 30, 200};
+    ax_pool* pool = ax_pool_make(2);
     for (int t = 0; t < 6; ++t) {
         grid g = make_grid(sides[t]);
-        ax_entries entries = {0};
-        for (int v = 0; v < g.points; ++v)
-            ax_entries_add(&entries, v, v, 6.5);
-        for (int e = 0; e < g.edges; ++e)
-            ax_entries_add(&entries, g.edge[e][0], g.edge[e][1], -1);
-        ax_sparse matrix = ax_entries_sparse(&entries, g.points);
-        int *order = AX_NEW(int, g.points), *seen = AX_NEW0(int, g.points);
-        ax_order_by_place(&matrix, (const double(*)[3])g.place, NULL, order);
-        for (int v = 0; v < g.points; ++v)
-            assert_int_equal(seen[order[v]]++, 0); // a permutation
-        ax_panels* panels = ax_panels_analyse(&matrix, order);
-        assert_true(ax_panels_factor(panels, &matrix, NULL));
-        ax_vec4* x = ax_alloc_aligned((size_t)g.points, sizeof *x);
-        ax_random random = {9};
-        for (int v = 0; v < g.points; ++v)
-            for (int c = 0; c < 4; ++c)
-                x[v][c] = ax_random_uniform(&random, -1, 1);
-        ax_vec4* b = ax_copy(x, (size_t)g.points, sizeof *b);
-        ax_panels_solve(panels, NULL, x);
-        double *column = AX_NEW(double, g.points), *product = AX_NEW(double, g.points);
-        for (int c = 0; c < 4; ++c) {
-            for (int k = 0; k < g.points; ++k)
-                column[ax_panels_order(panels)[k]] = x[k][c];
-            ax_sparse_multiply(&matrix, column, product, 1);
-            for (int k = 0; k < g.points; ++k)
-                assert_near(product[ax_panels_order(panels)[k]], b[k][c], 1e-12);
-        }
-        void* blocks[] = {order, seen, x, b, column, product};
-        for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
-            ax_free(blocks[k]);
-        ax_panels_free(panels);
-        ax_sparse_free(&matrix);
+        ax_vec4 *x = ax_alloc_aligned((size_t)g.points, sizeof *x), *y = ax_alloc_aligned((size_t)g.points, sizeof *y);
+        solve_by_panels(&g, (const double(*)[3])g.place, NULL, x);
+        solve_by_panels(&g, (const double(*)[3])g.place, pool, y);
+        assert_memory_equal(x, y, (size_t)g.points * sizeof *x);
+        ax_free(x);
+        ax_free(y);
         free_grid(&g);
     }
+    ax_pool_free(pool);
+}
+
+// Nodes in one place or on one line cannot be dissected by place; the factor must not fill up for all that.
+static void places_that_tell_nothing_apart_still_order(void** state)
+{
+    (void)state;
+    grid g = make_grid(60);
+    ax_vec4* x = ax_alloc_aligned((size_t)g.points, sizeof *x);
+    double(*place)[3] = ax_calloc((size_t)g.points, sizeof *place);
+    double apart = solve_by_panels(&g, (const double(*)[3])g.place, NULL, x);
+    assert_at_most(solve_by_panels(&g, (const double(*)[3])place, NULL, x), 1.5 * apart);
+    for (int v = 0; v < g.points; ++v)
+        place[v][1] = g.place[v][1];
+    assert_at_most(solve_by_panels(&g, (const double(*)[3])place, NULL, x), 4 * apart);
+    place[7][0] = NAN;
+    assert_at_most(solve_by_panels(&g, (const double(*)[3])place, NULL, x), 1.5 * apart);
+    ax_free(x);
+    ax_free(place);
+    free_grid(&g);
+}
+
+static void panels_report_an_indefinite_matrix_and_stay_usable(void** state)
+{
+    (void)state;
+    grid g = make_grid(50);
+    int* order = AX_NEW(int, g.points);
+    ax_sparse sound = grid_laplacian(&g, 6.5), singular = grid_laplacian(&g, 0.5);
+    ax_order_by_place(&sound, (const double(*)[3])g.place, NULL, order);
+    ax_panels* panels = ax_panels_analyse(&sound, order);
+    assert_true(ax_panels_factor(panels, &sound, NULL));
+    assert_false(ax_panels_factor(panels, &singular, NULL));
+    assert_true(ax_panels_factor(panels, &sound, NULL));
+    ax_panels_free(panels);
+    ax_sparse_free(&sound);
+    ax_sparse_free(&singular);
+    ax_free(order);
+    free_grid(&g);
 }
 
 int main(void)
@@ -237,6 +293,8 @@ int main(void)
         cmocka_unit_test(a_free_point_falls_as_implicit_euler_says),
         cmocka_unit_test(a_point_bound_by_nothing_is_reported),
         cmocka_unit_test(panels_solve_what_was_factorised),
+        cmocka_unit_test(places_that_tell_nothing_apart_still_order),
+        cmocka_unit_test(panels_report_an_indefinite_matrix_and_stay_usable),
     };
     return cmocka_run_group_tests_name("solver", tests, NULL, NULL);
 }

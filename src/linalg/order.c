@@ -33,7 +33,7 @@ typedef struct dissection {
     int* node;         // the order in the making
     int* part_of;      // per node: `from` of its part, -1 in a separator
     int* scratch;      // per node; leaves keep local numbers here
-    atomic_bool dense; // some part cannot be cut
+    atomic_bool dense; // some part cannot be cut, or places are not numbers
     const part* parts; // of the loop that runs: its parts, their directions and halves
     cut* cuts;
     part (*halves)[2];
@@ -288,6 +288,8 @@ static void measure_reach(void* context, int task)
             reach = length > reach ? length : reach;
         }
         d->reach[v] = 1.000001 * reach; // bins of both ends are rounded
+        if (!isfinite(d->place[v][0] + d->place[v][1] + d->place[v][2]))
+            atomic_store(&d->dense, true);
     }
 }
 
@@ -340,7 +342,7 @@ void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], ax_poo
 
     // level by level while parts are large, so that all threads have work: every direction of every part is a task
     append(n > WHOLE ? &large : &whole, (part){0, n});
-    while (large.count) {
+    while (large.count && !d.dense) {
         d.parts = large.parts;
         d.cuts = AX_NEW(cut, large.count * DIRECTIONS);
         d.halves = ax_alloc((size_t)large.count, sizeof *d.halves);
@@ -356,8 +358,6 @@ void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], ax_poo
         ax_free(d.cuts);
         ax_free(d.halves);
         large = halved;
-        if (d.dense)
-            large.count = 0;
     }
     d.parts = whole.parts;
     if (!d.dense)
