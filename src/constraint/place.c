@@ -455,6 +455,16 @@ void ax_curve_derivatives(const ax_curve* curve, double t, double first[3], doub
     }
 }
 
+ax_curve_range ax_curve_extent(const ax_curve* curve)
+{
+    if (curve->kind == LINE)
+        return (ax_curve_range){-INFINITY, INFINITY, false, true};
+    if (curve->kind == ELLIPSE)
+        return (ax_curve_range){0, 1, true, true};
+    bool straight = curve->kind == POLYLINE || (curve->closed && curve->count == 2); // there and back
+    return (ax_curve_range){0, curve->count, curve->closed, !straight || curve->count == 1};
+}
+
 static void place_nearest(const void* geometry, const double x[3], double out[3])
 {
     ax_curve_nearest(geometry, x, out);

@@ -41,5 +41,12 @@ void ax_curve_point(const ax_curve* curve, double t, double out[3]);
 // piece that begins there. Zero where a curve is a single point.
 void ax_curve_derivatives(const ax_curve* curve, double t, double first[3], double second[3]);
 
+typedef struct ax_curve_range {
+    double from, to; // of t; infinite on a line
+    bool closed;     // `to` is `from` again
+    bool smooth;     // without corners between its ends
+} ax_curve_range;
+ax_curve_range ax_curve_extent(const ax_curve* curve);
+
 // The curve as a place, borrowed.
 ax_place ax_curve_place(const ax_curve* curve);

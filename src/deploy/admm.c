@@ -17,6 +17,9 @@ struct ax_admm {
     double rho;
     double (*x)[3];
     double (*z)[3], (*u)[3]; // per edge: the rigid edge vector and its scaled multiplier
+    double (*at)[3], (*pull)[3]; // per sliding hinge: its point on the curve or plane and its scaled multiplier
+    ax_deploy_frame* frame;
+    bool released;
     ax_vec4* right;          // per free hinge, in elimination order
     double (*gradient)[3];
     double* force;
@@ -54,9 +57,16 @@ ax_admm* ax_admm_make(const ax_deploy_model* m, const double (*x)[3])
     a->right = ax_alloc_aligned((size_t)m->unknowns, sizeof *a->right);
     a->gradient = ax_alloc((size_t)m->hinges, sizeof *a->gradient);
     a->force = AX_NEW0(double, m->edge_count);
+    a->at = ax_alloc((size_t)m->slide_count, sizeof *a->at);
+    a->pull = ax_calloc((size_t)m->slide_count, sizeof *a->pull);
+    a->frame = AX_NEW(ax_deploy_frame, m->slide_count);
     ax_entries entries = {0};
     for (int u = 0; u < m->unknowns; ++u)
         ax_entries_add(&entries, u, u, 1e-9);
+    for (int k = 0; k < m->slide_count; ++k) {
+        ax_entries_add(&entries, m->unknown[m->slide[k]], m->unknown[m->slide[k]], 1);
+        memcpy(a->at[k], x[m->slide[k]], sizeof *a->at);
+    }
     for (int e = 0; e < m->edge_count; ++e) {
         int i = m->unknown[m->edge[e][0]], j = m->unknown[m->edge[e][1]];
         if (i >= 0)
@@ -79,7 +89,7 @@ void ax_admm_free(ax_admm* a)
 {
     if (!a)
         return;
-    void* blocks[] = {a->x, a->z, a->u, a->right, a->gradient, a->force, a->row};
+    void* blocks[] = {a->x, a->z, a->u, a->at, a->pull, a->frame, a->right, a->gradient, a->force, a->row};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_panels_free(a->factor);
@@ -103,6 +113,17 @@ void ax_admm_forces(const ax_admm* a, double* force)
     }
 }
 
+// Hinges on curves, until they are released.
+static bool stays(const ax_admm* a, int h)
+{
+    return !a->released && a->model->hold[h].kind == AX_HOLD_ON_CURVE;
+}
+
+void ax_admm_release(ax_admm* a)
+{
+    a->released = true;
+}
+
 static ax_residuals measure(ax_admm* a)
 {
     const ax_deploy_model* m = a->model;
@@ -110,10 +131,19 @@ static ax_residuals measure(ax_admm* a)
     ax_admm_forces(a, a->force);
     ax_deploy_energy(m, x, a->gradient);
     ax_deploy_add_edge_forces(m, x, a->force, a->gradient);
+    ax_residuals residuals = {.edge = ax_deploy_edge_error(m, x)};
+    ax_deploy_frames(m, x, (const double(*)[3])a->gradient, a->frame);
+    for (int k = 0; k < m->slide_count; ++k) {
+        residuals.edge = fmax(residuals.edge, ax_distance3(x[m->slide[k]], a->at[k]));
+        if (stays(a, m->slide[k]))
+            a->frame[k] = (ax_deploy_frame){0};
+    }
+    ax_deploy_allow(m, a->frame, a->gradient);
     double sum = 0;
     for (int u = 0; u < m->unknowns; ++u)
         sum += ax_dot3(a->gradient[m->hinge[u]], a->gradient[m->hinge[u]]);
-    return (ax_residuals){.edge = ax_deploy_edge_error(m, x), .force = sqrt(sum)};
+    residuals.force = sqrt(sum);
+    return residuals;
 }
 
 static void iterate(ax_admm* a)
@@ -135,6 +165,9 @@ static void iterate(ax_admm* a)
                 a->right[a->row[j]][c] -= y - (i < 0 ? a->x[h[0]][c] : 0);
         }
     }
+    for (int k = 0; k < m->slide_count; ++k)
+        for (int c = 0; c < 3; ++c)
+            a->right[a->row[m->unknown[m->slide[k]]]][c] += a->at[k][c] - a->pull[k][c];
     ax_panels_solve(a->factor, NULL, a->right);
     for (int u = 0; u < m->unknowns; ++u)
         memcpy(a->x[m->hinge[u]], a->right[a->row[u]], sizeof *a->x);
@@ -148,6 +181,18 @@ static void iterate(ax_admm* a)
             a->z[e][c] = s * y[c];
             a->u[e][c] = y[c] - a->z[e][c];
         }
+    }
+    for (int k = 0; k < m->slide_count; ++k) {
+        int h = m->slide[k];
+        double y[3], at[3];
+        for (int c = 0; c < 3; ++c)
+            at[c] = y[c] = relaxation * a->x[h][c] + (1 - relaxation) * a->at[k][c] + a->pull[k][c];
+        if (stays(a, h))
+            memcpy(at, a->at[k], sizeof at);
+        else
+            ax_deploy_return(m, h, a->at[k], at);
+        ax_sub3(y, at, a->pull[k]);
+        memcpy(a->at[k], at, sizeof at);
     }
     ++a->iterations;
 }

@@ -13,9 +13,12 @@ void ax_admm_free(ax_admm* admm);
 void ax_admm_set_forces(ax_admm* admm, const double* force);
 
 typedef struct ax_residuals {
-    double edge;  // largest relative edge error
-    double force; // |gradient + J' force| over free hinges / load
+    double edge;  // largest relative edge error, and distance of a sliding hinge from its curve or plane
+    double force; // |gradient + J' force| in the directions in which hinges can move / load
 } ax_residuals;
+
+// Hinges on curves stay where they start until they are released.
+void ax_admm_release(ax_admm* admm);
 
 // Iterates until both residuals are at most `level`, at most `iterations` times. False if cancelled.
 bool ax_admm_run(ax_admm* admm, double level, int iterations, const ax_progress* progress, ax_residuals* residuals);

@@ -37,8 +37,8 @@ static void collect_polygons(ax_deploy_model* model, const ax_linkage* linkage)
 }
 
 ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*flat)[2],
-                                     const double (*supported_places)[3], const unsigned char* supports,
-                                     const double direction[3], double* unit_load)
+                                     const double (*places)[3], const ax_hold* holds, const double direction[3],
+                                     double* unit_load)
 {
     int n = linkage->hinge_count;
     ax_deploy_model m = {.hinges = n, .inflated = !direction};
@@ -55,19 +55,25 @@ ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*f
     // supports and their centre, which becomes the origin
     m.unknown = AX_NEW(int, n);
     m.hinge = AX_NEW(int, n);
+    m.slide = AX_NEW(int, n);
+    m.hold = ax_copy(holds, (size_t)n, sizeof *m.hold);
     int held = 0;
     for (int h = 0; h < n; ++h) {
         for (int c = 0; c < 2; ++c)
             m.flat_centre[c] += flat[h][c] / n;
-        if (supports[h]) {
+        if (ax_deploy_placed(&m, h)) {
             for (int c = 0; c < 3; ++c)
-                m.centre[c] += supported_places[h][c];
+                m.centre[c] += places[h][c];
             ++held;
+        }
+        if (holds[h].kind == AX_HOLD_FIXED) {
             m.unknown[h] = -1;
         } else {
             m.hinge[m.unknowns] = h;
             m.unknown[h] = m.unknowns++;
         }
+        if (holds[h].kind > AX_HOLD_FIXED)
+            m.slide[m.slide_count++] = h;
     }
     assert(held > 0);
     for (int c = 0; c < 3; ++c)
@@ -77,9 +83,11 @@ ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*f
     for (int h = 0; h < n; ++h) {
         for (int c = 0; c < 2; ++c)
             m.rest[h][c] = (flat[h][c] - m.flat_centre[c]) / m.unit;
-        if (supports[h])
+        if (holds[h].kind != AX_HOLD_FREE)
             for (int c = 0; c < 3; ++c)
-                m.support[h][c] = (supported_places[h][c] - m.centre[c]) / m.unit;
+                m.support[h][c] = (places[h][c] - m.centre[c]) / m.unit;
+        if (holds[h].kind == AX_HOLD_ON_CURVE)
+            ax_deploy_return(&m, h, m.support[h], m.support[h]);
     }
 
     int most = 3 * linkage->triangle_count;
@@ -92,7 +100,7 @@ ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*f
         if (linkage->on_rim[linkage->triangles[e / 3]
                                               [e % 3]]) // a panel with a hinge on the rim spans twice its edge of it
             rim += 2;
-        if (supports[i] && supports[j])
+        if (m.unknown[i] < 0 && m.unknown[j] < 0)
             continue; // both ends held: no equation
         m.edge[m.edge_count][0] = i, m.edge[m.edge_count][1] = j;
         m.length[m.edge_count] = ax_distance2(m.rest[i], m.rest[j]);
@@ -115,11 +123,123 @@ ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*f
 
 void ax_deploy_model_free(ax_deploy_model* m)
 {
-    void* blocks[] = {m->unknown, m->hinge,   m->edge,    m->length,        m->edge_source,
-                      m->rest,    m->support, m->gravity, m->polygon_start, m->polygon};
+    void* blocks[] = {m->unknown,     m->hinge, m->slide,   m->hold,    m->edge,          m->length,
+                      m->edge_source, m->rest,  m->support, m->gravity, m->polygon_start, m->polygon};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     *m = (ax_deploy_model){0};
+}
+
+// The place on a curve nearest to x, model units, as its parameter.
+static double nearest(const ax_deploy_model* m, const ax_curve* curve, const double x[3], double out[3])
+{
+    double place[3];
+    for (int c = 0; c < 3; ++c)
+        place[c] = x[c] * m->unit + m->centre[c];
+    double t = ax_curve_nearest(curve, place, out);
+    for (int c = 0; c < 3; ++c)
+        out[c] = (out[c] - m->centre[c]) / m->unit;
+    return fabs(t - round(t)) < 1e-9 ? round(t) : t; // a corner remains one after a change of units
+}
+
+void ax_deploy_return(const ax_deploy_model* m, int h, const double from[3], double x[3])
+{
+    const ax_hold* hold = &m->hold[h];
+    if (hold->kind == AX_HOLD_IN_PLANE) {
+        double d[3];
+        ax_sub3(x, m->support[h], d);
+        double off = ax_dot3(d, hold->normal);
+        for (int c = 0; c < 3; ++c)
+            x[c] -= off * hold->normal[c];
+        return;
+    }
+    ax_curve_range range = ax_curve_extent(hold->curve);
+    double place[3], start[3], to = nearest(m, hold->curve, x, place);
+    if (!range.smooth) {
+        double t = nearest(m, hold->curve, from, start), span = range.to - range.from, way = to - t;
+        if (range.closed)
+            way -= span * round(way / span); // the shorter way round
+        double corner = way > 0 ? floor(t) + 1 : ceil(t) - 1;
+        if (fabs(way) > fabs(corner - t)) {
+            ax_curve_point(hold->curve, corner, place);
+            for (int c = 0; c < 3; ++c)
+                place[c] = (place[c] - m->centre[c]) / m->unit;
+        }
+    }
+    memcpy(x, place, sizeof place);
+}
+
+double ax_deploy_parameter(const ax_deploy_model* m, int h, const double x[3])
+{
+    double place[3];
+    return nearest(m, m->hold[h].curve, x, place);
+}
+
+static double unit_tangent(const ax_curve* curve, double t, double tangent[3], double second[3])
+{
+    ax_curve_derivatives(curve, t, tangent, second);
+    double speed = ax_norm3(tangent);
+    for (int c = 0; c < 3 && speed > 0; ++c)
+        tangent[c] /= speed;
+    return speed;
+}
+
+static ax_deploy_frame frame_on_curve(const ax_deploy_model* m, const ax_curve* curve, const double x[3],
+                                      const double gradient[3])
+{
+    ax_curve_range range = ax_curve_extent(curve);
+    double place[3], tangent[3], second[3], t = nearest(m, curve, x, place);
+    double speed = unit_tangent(curve, t, tangent, second);
+    ax_deploy_frame frame = {0};
+    if (!(speed > 0)) // the curve is a point
+        return frame;
+    bool first = !range.closed && t <= range.from, last = !range.closed && t >= range.to;
+    if (first || last || (!range.smooth && t == round(t))) {
+        // from a corner it leaves along the side on which the energy falls more steeply, if it falls on any
+        double back[3], ignored[3];
+        unit_tangent(curve, first ? t : t - 1e-6, back, ignored);
+        double ahead_slope = last ? 0 : ax_dot3(gradient, tangent), back_slope = first ? 0 : -ax_dot3(gradient, back);
+        if (ahead_slope >= 0 && back_slope >= 0)
+            return frame;
+        if (back_slope < ahead_slope)
+            memcpy(tangent, back, sizeof back);
+        if (!range.smooth)
+            memset(second, 0, sizeof second);
+    }
+    double along = ax_dot3(tangent, second);
+    for (int r = 0; r < 3; ++r) {
+        frame.bend += gradient[r] * (second[r] - along * tangent[r]) / (speed * speed) * m->unit;
+        for (int c = 0; c < 3; ++c)
+            frame.allowed[r][c] = tangent[r] * tangent[c];
+    }
+    return frame;
+}
+
+void ax_deploy_frames(const ax_deploy_model* m, const double (*x)[3], const double (*gradient)[3],
+                      ax_deploy_frame* frame)
+{
+    for (int k = 0; k < m->slide_count; ++k) {
+        int h = m->slide[k];
+        const ax_hold* hold = &m->hold[h];
+        if (hold->kind == AX_HOLD_ON_CURVE) {
+            frame[k] = frame_on_curve(m, hold->curve, x[h], gradient[h]);
+            continue;
+        }
+        frame[k].bend = 0;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c)
+                frame[k].allowed[r][c] = (r == c) - hold->normal[r] * hold->normal[c];
+    }
+}
+
+void ax_deploy_allow(const ax_deploy_model* m, const ax_deploy_frame* frame, double (*v)[3])
+{
+    for (int k = 0; k < m->slide_count; ++k) {
+        double* at = v[m->slide[k]];
+        double out[3] = {ax_dot3(frame[k].allowed[0], at), ax_dot3(frame[k].allowed[1], at),
+                         ax_dot3(frame[k].allowed[2], at)};
+        memcpy(at, out, sizeof out);
+    }
 }
 
 // Volume between a polygon, closed by a fan about its centroid c, and the origin: c . S / 6, S = sum x_k x x_{k+1}.
@@ -207,7 +327,10 @@ static int pair_count(int corners)
 
 ax_deploy_hessian ax_deploy_hessian_make(const ax_deploy_model* m)
 {
-    ax_deploy_hessian h = {.edge_block = AX_NEW(int, m->edge_count)};
+    ax_deploy_hessian h = {.edge_block = AX_NEW(int, m->edge_count), .slide = AX_NEW(int, m->unknowns)};
+    memset(h.slide, -1, (size_t)m->unknowns * sizeof *h.slide);
+    for (int k = 0; k < m->slide_count; ++k)
+        h.slide[m->unknown[m->slide[k]]] = k;
     h.polygon_block_start = AX_NEW0(int, m->polygon_count + 1);
     int most = m->edge_count, count = 0;
     for (int p = 0; p < m->polygon_count; ++p) {
@@ -250,7 +373,33 @@ void ax_deploy_hessian_free(ax_deploy_hessian* h)
     ax_free(h->edge_block);
     ax_free(h->polygon_block);
     ax_free(h->polygon_block_start);
+    ax_free(h->slide);
     *h = (ax_deploy_hessian){0};
+}
+
+// Adds a block of the rows of unknown i and the columns of unknown j <= i, k its index off the diagonal, where each node
+// keeps to the directions that it is allowed.
+static void add_block(ax_deploy_hessian* h, const ax_deploy_frame* frame, int k, int i, int j,
+                      double block[9])
+{
+    int side[2] = {frame ? h->slide[i] : -1, frame ? h->slide[j] : -1};
+    if (side[0] >= 0 || side[1] >= 0) {
+        double half[9], (*keep)[3] = (double(*)[3])half;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) {
+                const double(*p)[3] = side[0] >= 0 ? frame[side[0]].allowed : NULL;
+                keep[r][c] = p ? p[r][0] * block[c] + p[r][1] * block[3 + c] + p[r][2] * block[6 + c] : block[3 * r + c];
+            }
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) {
+                const double(*p)[3] = side[1] >= 0 ? frame[side[1]].allowed : NULL;
+                block[3 * r + c] = p ? ax_dot3(keep[r], p[c]) : keep[r][c];
+            }
+    }
+    if (i == j)
+        ax_blocks_add_diagonal(&h->blocks, i, block);
+    else
+        ax_blocks_add(&h->blocks, k, j, block);
 }
 
 // block += w [v]x
@@ -271,7 +420,8 @@ static void transpose(double block[9])
 }
 
 // Second derivatives of the volume: every pair of corners is coupled through the centroid of the fan. The diagonal vanishes.
-static void add_volume(ax_deploy_hessian* h, const ax_deploy_model* m, const double (*x)[3])
+static void add_volume(ax_deploy_hessian* h, const ax_deploy_model* m, const double (*x)[3],
+                       const ax_deploy_frame* frame)
 {
     for (int p = 0; p < m->polygon_count; ++p) {
         const int* loop = m->polygon + m->polygon_start[p];
@@ -296,37 +446,44 @@ static void add_volume(ax_deploy_hessian* h, const ax_deploy_model* m, const dou
                 int i = m->unknown[loop[a]], j = m->unknown[loop[b]];
                 if (i < j)
                     transpose(block); // rows belong to the larger node
-                ax_blocks_add(&h->blocks, h->polygon_block[at], i < j ? i : j, block);
+                add_block(h, frame, h->polygon_block[at], i > j ? i : j, i < j ? i : j, block);
             }
     }
 }
 
-void ax_deploy_hessian_fill(ax_deploy_hessian* h, const ax_deploy_model* m, const double (*x)[3], const double* force,
+void ax_deploy_hessian_fill(ax_deploy_hessian* h, const ax_deploy_model* m, const double (*x)[3],
+                            const ax_deploy_frame* frame, const double* force,
                             double shift, double mu)
 {
     ax_blocks_clear(&h->blocks);
     const double identity[9] = {shift, 0, 0, 0, shift, 0, 0, 0, shift};
     for (int u = 0; u < m->unknowns; ++u)
         ax_blocks_add_diagonal(&h->blocks, u, identity);
+    for (int k = 0; k < m->slide_count && frame; ++k) {
+        double block[9];
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c)
+                block[3 * r + c] = mu * ((r == c) - frame[k].allowed[r][c]) + frame[k].bend * frame[k].allowed[r][c];
+        ax_blocks_add_diagonal(&h->blocks, m->unknown[m->slide[k]], block);
+    }
     for (int e = 0; e < m->edge_count; ++e) {
         int i = m->unknown[m->edge[e][0]], j = m->unknown[m->edge[e][1]];
-        double d[3], l = m->length[e], block[9], minus[9];
+        double d[3], l = m->length[e], block[9], again[9], minus[9];
         ax_sub3(x[m->edge[e][0]], x[m->edge[e][1]], d);
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c)
                 block[3 * r + c] = mu * (d[r] / l) * (d[c] / l) + (r == c ? force[e] / l : 0);
+        for (int k = 0; k < 9; ++k)
+            minus[k] = -block[k], again[k] = block[k];
         if (i >= 0)
-            ax_blocks_add_diagonal(&h->blocks, i, block);
+            add_block(h, frame, -1, i, i, block);
         if (j >= 0)
-            ax_blocks_add_diagonal(&h->blocks, j, block);
-        if (h->edge_block[e] >= 0) {
-            for (int k = 0; k < 9; ++k)
-                minus[k] = -block[k];
-            ax_blocks_add(&h->blocks, h->edge_block[e], i < j ? i : j, minus);
-        }
+            add_block(h, frame, -1, j, j, again);
+        if (h->edge_block[e] >= 0)
+            add_block(h, frame, h->edge_block[e], i > j ? i : j, i < j ? i : j, minus);
     }
     if (m->inflated)
-        add_volume(h, m, x);
+        add_volume(h, m, x, frame);
 }
 
 // Rotation that takes the flat places of the supports nearest to where they are held (Horn 1987, by power iteration on the
@@ -334,16 +491,18 @@ void ax_deploy_hessian_fill(ax_deploy_hessian* h, const ax_deploy_model* m, cons
 static void align(const ax_deploy_model* m, double rotation[3][3])
 {
     double flat_mean[2] = {0, 0}, mean[3] = {0, 0, 0}, s[3][3] = {{0}};
-    int held = m->hinges - m->unknowns;
+    int held = 0;
     for (int h = 0; h < m->hinges; ++h)
-        if (m->unknown[h] < 0) {
+        held += ax_deploy_placed(m, h);
+    for (int h = 0; h < m->hinges; ++h)
+        if (ax_deploy_placed(m, h)) {
             for (int c = 0; c < 2; ++c)
                 flat_mean[c] += m->rest[h][c] / held;
             for (int c = 0; c < 3; ++c)
                 mean[c] += m->support[h][c] / held;
         }
     for (int h = 0; h < m->hinges; ++h)
-        if (m->unknown[h] < 0)
+        if (ax_deploy_placed(m, h))
             for (int a = 0; a < 2; ++a)
                 for (int b = 0; b < 3; ++b)
                     s[a][b] += (m->rest[h][a] - flat_mean[a]) * (m->support[h][b] - mean[b]);
@@ -393,8 +552,13 @@ void ax_deploy_start(const ax_deploy_model* m, double noise, double (*x)[3])
     double* move[3]; // one column per coordinate
     for (int c = 0; c < 3; ++c)
         move[c] = columns + (size_t)c * (size_t)m->unknowns;
-    for (int u = 0; u < m->unknowns; ++u)
-        ax_entries_add(&entries, u, u, 1e-9); // keeps parts without support solvable
+    for (int u = 0; u < m->unknowns; ++u) {
+        int h = m->hinge[u];
+        double hold = ax_deploy_placed(m, h) ? 1e6 : 1e-9; // the least keeps parts without support solvable
+        ax_entries_add(&entries, u, u, hold);
+        for (int c = 0; c < 3 && hold > 1; ++c)
+            move[c][u] = hold * (m->support[h][c] - x[h][c]);
+    }
     for (int e = 0; e < m->edge_count; ++e) {
         int h[2] = {m->edge[e][0], m->edge[e][1]}, u[2] = {m->unknown[h[0]], m->unknown[h[1]]};
         for (int end = 0; end < 2; ++end) {
@@ -416,11 +580,14 @@ void ax_deploy_start(const ax_deploy_model* m, double noise, double (*x)[3])
     ax_sparse_free(&laplacian);
 
     ax_random random = {1};
-    for (int h = 0; h < m->hinges; ++h)
+    for (int h = 0; h < m->hinges; ++h) {
         for (int c = 0; c < 3; ++c)
-            if (m->unknown[h] < 0)
+            if (ax_deploy_placed(m, h))
                 x[h][c] = m->support[h][c];
             else
                 x[h][c] += move[c][m->unknown[h]] + ax_random_uniform(&random, -noise, noise);
+        if (m->hold[h].kind == AX_HOLD_IN_PLANE)
+            ax_deploy_return(m, h, x[h], x[h]);
+    }
     ax_free(columns);
 }

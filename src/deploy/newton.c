@@ -22,6 +22,7 @@ struct ax_newton {
     ax_deploy_hessian hessian;
     ax_cholesky* factor;
     int factorisations;
+    ax_deploy_frame *frame, *trial_frame;
     double (*y)[3], (*work)[3], (*gradient)[3]; // per hinge
     double (*d)[3], (*move)[3], (*right)[3];    // per free hinge
     double *c, *trial_c, *trial_force, *change, *jd;
@@ -33,6 +34,8 @@ ax_newton* ax_newton_make(const ax_deploy_model* m)
     s->model = m;
     s->hessian = ax_deploy_hessian_make(m);
     s->factor = ax_cholesky_analyse(&s->hessian.blocks.matrix, AX_FACTOR_SUPERNODAL);
+    s->frame = AX_NEW0(ax_deploy_frame, m->slide_count);
+    s->trial_frame = AX_NEW0(ax_deploy_frame, m->slide_count);
     s->y = ax_alloc((size_t)m->hinges, sizeof *s->y);
     s->work = ax_alloc((size_t)m->hinges, sizeof *s->work);
     s->gradient = ax_alloc((size_t)m->hinges, sizeof *s->gradient);
@@ -52,7 +55,8 @@ void ax_newton_free(ax_newton* s)
     if (!s)
         return;
     void* blocks[] = {s->y, s->work,    s->gradient,    s->d,      s->move, s->right,
-                      s->c, s->trial_c, s->trial_force, s->change, s->jd};
+                      s->c, s->trial_c, s->trial_force, s->change, s->jd,   s->frame,
+                      s->trial_frame};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_deploy_hessian_free(&s->hessian);
@@ -78,16 +82,20 @@ static void transposed_times(ax_newton* s, const double (*x)[3], const double* f
     const ax_deploy_model* m = s->model;
     memset(s->work, 0, (size_t)m->hinges * sizeof *s->work);
     ax_deploy_add_edge_forces(m, x, force, s->work);
+    ax_deploy_allow(m, s->frame, s->work);
     for (int u = 0; u < m->unknowns; ++u)
         memcpy(right[u], s->work[m->hinge[u]], sizeof *right);
 }
 
-// Gradient of the Lagrangian over the free hinges; returns the energy.
-static double lagrangian_gradient(ax_newton* s, const double (*x)[3], const double* force, double (*gradient)[3])
+// Gradient of the Lagrangian over the unknown hinges in the directions that `frame`, made here, allows; returns the energy.
+static double lagrangian_gradient(ax_newton* s, const double (*x)[3], const double* force, ax_deploy_frame* frame,
+                                  double (*gradient)[3])
 {
     const ax_deploy_model* m = s->model;
     double energy = ax_deploy_energy(m, x, s->work);
     ax_deploy_add_edge_forces(m, x, force, s->work);
+    ax_deploy_frames(m, x, (const double(*)[3])s->work, frame);
+    ax_deploy_allow(m, frame, s->work);
     for (int u = 0; u < m->unknowns; ++u)
         memcpy(gradient[u], s->work[m->hinge[u]], sizeof *gradient);
     return energy;
@@ -103,12 +111,12 @@ static double dot(int n, const double* a, const double* b)
 
 static bool factorise(ax_newton* s, const double (*x)[3], const double* force, double shift, double mu)
 {
-    ax_deploy_hessian_fill(&s->hessian, s->model, x, force, shift, mu);
+    ax_deploy_hessian_fill(&s->hessian, s->model, x, s->frame, force, shift, mu);
     ++s->factorisations;
     return ax_cholesky_factor(s->factor, &s->hessian.blocks.matrix);
 }
 
-// y = x + t d on the free hinges.
+// y = x + t d on the unknown hinges, back on their curves and planes.
 static void displace(const ax_deploy_model* m, const double (*x)[3], const double (*d)[3], double t, double (*y)[3])
 {
     if (y != x)
@@ -116,6 +124,13 @@ static void displace(const ax_deploy_model* m, const double (*x)[3], const doubl
     for (int u = 0; u < m->unknowns; ++u)
         for (int c = 0; c < 3; ++c)
             y[m->hinge[u]][c] += t * d[u][c];
+    for (int k = 0; k < m->slide_count; ++k) {
+        int h = m->slide[k], u = m->unknown[h];
+        double from[3];
+        for (int c = 0; c < 3; ++c)
+            from[c] = y[h][c] - t * d[u][c];
+        ax_deploy_return(m, h, from, y[h]);
+    }
 }
 
 // The KKT step d and the change of the multipliers, by Uzawa refinement on the factor of K.
@@ -170,13 +185,15 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
     const double(*at)[3] = (const double(*)[3])x;
     int n = m->unknowns, edges = m->edge_count, hold = 0, rejected = 0;
     double stiffness = m->tension; // force per length: the unit of every stiffness below
+    // a rim on a circle turns freely: motions without stiffness are held a little, and count as stable
+    double neutral = m->slide_count ? 1e-6 * stiffness : 0;
     double kappa = penalty_far, shift = 0, last_shift = 0, least = 1e-5 * stiffness,
            penalty = merit_penalty * stiffness;
     double(*gradient)[3] = ax_alloc((size_t)n, sizeof *gradient);
     ax_newton_result result = {0};
     s->factorisations = 0;
 
-    double energy = lagrangian_gradient(s, at, force, gradient);
+    double energy = lagrangian_gradient(s, at, force, s->frame, gradient);
     ax_deploy_constraints(m, at, s->c);
     while (true) {
         double edge = ax_deploy_edge_error(m, at);
@@ -196,7 +213,7 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
 
         // inertia correction: raise the shift until the factorisation succeeds
         bool definite = false;
-        for (int tries = 0; tries < 40 && !(definite = factorise(s, at, force, shift, mu)); ++tries) {
+        for (int tries = 0; tries < 40 && !(definite = factorise(s, at, force, fmax(shift, neutral), mu)); ++tries) {
             shift = shift > 0 ? 4 * shift : fmax(least, last_shift / 2);
             hold = 2;
         }
@@ -204,12 +221,13 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
             break;
         if (shift > 0)
             last_shift = shift;
+        double damping = fmax(shift, neutral);
         kkt_step(s, at, (const double(*)[3])gradient, mu);
 
         jacobian_times(m, at, (const double(*)[3])s->d, s->jd);
         double d2 = dot(3 * n, s->d[0], s->d[0]), c2 = dot(edges, s->c, s->c);
-        double curvature = -dot(3 * n, s->d[0], gradient[0]) - dot(edges, s->jd, s->change) - shift * d2;
-        double predicted = curvature / 2 + shift * d2 + penalty * c2 / 2;
+        double curvature = -dot(3 * n, s->d[0], gradient[0]) - dot(edges, s->jd, s->change) - damping * d2;
+        double predicted = curvature / 2 + damping * d2 + penalty * c2 / 2;
         double lagrangian = energy + dot(edges, force, s->c) + dot(edges, s->change, s->c);
         double before = lagrangian + penalty * c2 / 2, floor = 1e-13 * (fabs(energy) + 1);
         double residual_merit = residual * residual + 100 * stiffness * stiffness * c2, longest = 0;
@@ -224,7 +242,8 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
             for (int e = 0; e < edges; ++e)
                 s->trial_force[e] = force[e] + t * s->change[e];
             if (t == 1) { // where Newton contracts at once, nothing else is needed
-                trial_energy = lagrangian_gradient(s, (const double(*)[3])s->y, s->trial_force, s->move);
+                trial_energy = lagrangian_gradient(s, (const double(*)[3])s->y, s->trial_force, s->trial_frame,
+                                                   s->move);
                 double now = dot(3 * n, s->move[0], s->move[0]) +
                              100 * stiffness * stiffness * dot(edges, s->trial_c, s->trial_c);
                 if ((now < 0.1 * residual_merit && shift < 1e-2 * stiffness) || now < 1e-24) {
@@ -268,12 +287,12 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
             shift = fmax(4 * shift, least);
         memcpy(x, s->y, (size_t)m->hinges * sizeof *x);
         memcpy(force, s->trial_force, (size_t)edges * sizeof *force);
-        energy = lagrangian_gradient(s, at, force, gradient);
+        energy = lagrangian_gradient(s, at, force, s->frame, gradient);
         ax_deploy_constraints(m, at, s->c);
         ++result.steps;
     }
     result.energy = energy;
-    result.stable = result.exact && factorise(s, at, force, 0, penalty_near * stiffness);
+    result.stable = result.exact && factorise(s, at, force, neutral, penalty_near * stiffness);
     result.factorisations = s->factorisations;
     ax_free(gradient);
     return result;
@@ -283,10 +302,11 @@ void ax_newton_fit_forces(ax_newton* s, const double (*x)[3], double* force)
 {
     const ax_deploy_model* m = s->model;
     memset(force, 0, (size_t)m->edge_count * sizeof *force);
+    lagrangian_gradient(s, x, force, s->frame, s->right); // tells which way hinges can slide
     if (!factorise(s, x, force, 1e-7, 1)) // J'J + 1e-7 I
         return;
     for (int round = 0; round < 3; ++round) {
-        lagrangian_gradient(s, x, force, s->right);
+        lagrangian_gradient(s, x, force, s->frame, s->right);
         ax_cholesky_solve(s->factor, s->right[0], s->d[0], 1);
         jacobian_times(m, x, (const double(*)[3])s->d, s->jd);
         for (int e = 0; e < m->edge_count; ++e)

@@ -71,9 +71,13 @@ ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_pr
         return ax_fail(error, AX_USAGE, "%d hinges are supported; at least three are needed to hold the shell.", held);
     bool gravity = load->kind == AX_LOAD_GRAVITY;
     double metre = ax_unit_in_metres(design->unit), unit_load, start = ax_seconds();
+    ax_hold* holds = AX_NEW0(ax_hold, design->linkage.hinge_count);
+    for (int h = 0; h < design->linkage.hinge_count; ++h)
+        holds[h].kind = design->supports[h] ? AX_HOLD_FIXED : AX_HOLD_FREE;
     ax_deploy_model model =
         ax_deploy_model_make(&design->linkage, (const double(*)[2])design->flat, (const double(*)[3])design->deployed,
-                             design->supports, gravity ? load->direction : NULL, &unit_load);
+                             holds, gravity ? load->direction : NULL, &unit_load);
+    ax_free(holds);
     double newton = unit_load * metre * metre * (gravity ? load->density * standard_gravity : load->pressure);
     double(*x)[3] = ax_alloc((size_t)model.hinges, sizeof *x), *force = AX_NEW0(double, model.edge_count);
     ax_deployment result;
