@@ -183,7 +183,8 @@ static void hessian_agrees_with_differences_where_hinges_slide(void** state)
         double(*g)[3] = ax_alloc((size_t)m.hinges, sizeof *g), (*change)[3] = ax_alloc((size_t)m.hinges, sizeof *g);
         double *force = AX_NEW(double, m.edge_count), step = 1e-5;
         double *unit = AX_NEW0(double, 3 * m.unknowns), *column = AX_NEW(double, 3 * m.unknowns);
-        ax_deploy_frame *frame = AX_NEW(ax_deploy_frame, m.slide_count), *moved = AX_NEW(ax_deploy_frame, m.slide_count);
+        ax_deploy_frame *frame = AX_NEW(ax_deploy_frame, m.slide_count),
+                        *moved = AX_NEW(ax_deploy_frame, m.slide_count);
         ax_random random = {43};
         ax_deploy_start(&m, 0.2, x);
         for (int e = 0; e < m.edge_count; ++e)
@@ -330,7 +331,7 @@ static double slide(int kind, bool gravity, double reach, bool even, ax_deployme
     const ax_linkage* linkage = &s.lattice.linkage;
     ax_curve* curve = make_curve(kind, 1.5 * reach);
     if (even) { // in the order in which the nearest places have them
-        int* rim = AX_NEW(int, linkage->hinge_count), n = 0;
+        int *rim = AX_NEW(int, linkage->hinge_count), n = 0;
         for (int h = 0; h < linkage->hinge_count; ++h)
             if (linkage->on_rim[h])
                 rim[n++] = h;
@@ -402,7 +403,8 @@ static void arches_stay_in_their_plane_and_push_across_it_alone(void** state)
         double energy[2];
         for (int leaning = 0; leaning < 2; ++leaning) {
             ax_deploy_model m = model_arch(&s, gravity, leaning ? 0.2 : 0);
-            double(*x)[3] = ax_alloc((size_t)m.hinges, sizeof *x), (*left)[3] = ax_alloc((size_t)m.hinges, sizeof *left);
+            double(*x)[3] = ax_alloc((size_t)m.hinges, sizeof *x),
+            (*left)[3] = ax_alloc((size_t)m.hinges, sizeof *left);
             double *force = AX_NEW0(double, m.edge_count), along = 0, across = 0;
             ax_deployment result = deploy(&m, x, force);
             assert_true(result.exact && result.stable);

@@ -2,6 +2,7 @@
 #include "analysis/measure.h"
 #include "ax/design.h"
 #include "base/vec.h"
+#include "design/simulate.h"
 #include "support/shapes.h"
 #include "support/test.h"
 
@@ -165,6 +166,76 @@ static void a_shell_held_at_every_other_rim_hinge_hangs_in_balance(void** state)
     ax_design_free(&d);
 }
 
+static void a_rim_that_slides_on_its_circle_stays_near_the_design(void** state)
+{
+    (void)state;
+    ax_design d = design_cap(300, AX_BORDER_EQUILATERAL, AX_LOAD_INFLATION);
+    int n = d.linkage.hinge_count;
+    double fixed = d.report.energy, up[3] = {0, 0, 1}, centre[3] = {0, 0, cos(0.9)};
+    ax_hold* holds = AX_NEW0(ax_hold, n);
+    ax_load load = d.load;
+    ax_error error = {0};
+    for (int longer = 0; longer < 2; ++longer) {
+        ax_curve* circle = ax_curve_circle(centre, up, sin(0.9) * (longer ? 1.1 : 1));
+        for (int h = 0; h < n; ++h)
+            if (d.linkage.on_rim[h])
+                holds[h] = (ax_hold){.kind = AX_HOLD_ON_CURVE, .curve = circle};
+        ax_status status = ax_design_simulate_held(&d, &load, holds, NULL, &error);
+        if (longer) {
+            assert_int_equal(status, AX_CANNOT_REALISE);
+            assert_non_null(strstr(error.message, "gathers"));
+            assert_null(d.slides);
+        } else {
+            if (status != AX_OK)
+                fail_msg("%s", error.message);
+            assert_at_most(d.report.force_residual, 1e-10);
+            assert_at_most(d.report.simulated_max_over_L, 0.3);
+            assert_true(d.report.energy < fixed + 1e-9); // it may do what the fixed rim does
+            // the measure sees the freedom: held fast the rim hides nothing, along another axis it is out of balance
+            for (int h = 0; h < n; ++h)
+                if (d.linkage.on_rim[h]) {
+                    assert_int_equal(d.slides[h].freedom, AX_FREE_ALONG);
+                    d.slides[h].axis[0] = 0, d.slides[h].axis[1] = 0, d.slides[h].axis[2] = 1;
+                }
+            ax_design_measure(&d);
+            assert_true(d.report.force_residual > 1e-3);
+        }
+        ax_curve_free(circle);
+    }
+    ax_free(holds);
+    ax_design_free(&d);
+}
+
+static void arches_are_supports_in_their_planes(void** state)
+{
+    (void)state;
+    ax_design d = design_cap(300, AX_BORDER_EQUILATERAL, AX_LOAD_GRAVITY);
+    int n = d.linkage.hinge_count, arch = 0;
+    ax_hold* holds = AX_NEW0(ax_hold, n);
+    for (int h = 0; h < n; ++h)
+        if (d.linkage.on_rim[h])
+            holds[h].kind = AX_HOLD_FIXED;
+        else if (fabs(d.deployed[h][0]) < 0.3 * d.report.edge_mean)
+            holds[h] = (ax_hold){.kind = AX_HOLD_IN_PLANE, .normal = {1, 0, 0}}, ++arch;
+    assert_true(arch > 5);
+    ax_load load = d.load;
+    ax_error error = {0};
+    if (ax_design_simulate_held(&d, &load, holds, NULL, &error) != AX_OK)
+        fail_msg("%s", error.message);
+    assert_at_most(d.report.force_residual, 1e-10);
+    for (int h = 0; h < n; ++h)
+        if (holds[h].kind == AX_HOLD_IN_PLANE) {
+            assert_int_equal(d.slides[h].freedom, AX_FREE_ACROSS);
+            assert_near(d.simulated[h][0], d.deployed[h][0], 1e-12);
+        }
+    // held fast on the rim again nothing slides
+    assert_int_equal(ax_design_set_supports(&d, "rim", NULL), AX_OK);
+    assert_int_equal(ax_design_simulate(&d, &load, NULL, NULL), AX_OK);
+    assert_null(d.slides);
+    ax_free(holds);
+    ax_design_free(&d);
+}
+
 static void far_away_and_small_models_lose_nothing(void** state)
 {
     (void)state;
@@ -295,6 +366,8 @@ int main(void)
         cmocka_unit_test(real_loads_scale_forces_and_nothing_else),
         cmocka_unit_test(supports_are_chosen_in_words),
         cmocka_unit_test(a_shell_held_at_every_other_rim_hinge_hangs_in_balance),
+        cmocka_unit_test(a_rim_that_slides_on_its_circle_stays_near_the_design),
+        cmocka_unit_test(arches_are_supports_in_their_planes),
         cmocka_unit_test(far_away_and_small_models_lose_nothing),
         cmocka_unit_test(flat_facets_are_named_where_they_keep_the_shell_from_settling),
         cmocka_unit_test(impossible_wishes_are_refused_by_name),

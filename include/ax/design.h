@@ -43,6 +43,13 @@ typedef struct ax_design_options {
 } ax_design_options;
 ax_design_options ax_design_options_default(void); // inflation at 100 Pa, 4 kg/m2 should gravity be chosen
 
+// Freedom that a support leaves a hinge, without friction.
+typedef enum ax_freedom { AX_HELD_FAST, AX_FREE_ALONG, AX_FREE_ACROSS } ax_freedom;
+typedef struct ax_slide {
+    ax_freedom freedom;
+    double axis[3]; // unit: the tangent of a curve, along which it slides, or the normal of a plane, across which it does
+} ax_slide;
+
 // Every figure of the report. Lengths "over L" are divided by the mean triangle edge L; NaN where a state is missing.
 typedef struct ax_report {
     // geometry
@@ -85,7 +92,8 @@ typedef struct ax_design {
     double (*deployed)[3];
     double (*simulated)[3];  // NULL unless exact
     double* scale;           // lambda per triangle, realised, measured on the flat state
-    unsigned char* supports; // per hinge: 1 where the simulation holds it at its deployed place
+    unsigned char* supports; // per hinge: 1 where the simulation holds it, at its deployed place unless it slides
+    ax_slide* slides;        // per hinge, at the simulated state; NULL: every support holds fast
     ax_load load;
     double (*forces)[3];      // N per hinge at the simulated state; NULL unless simulated
     double (*edge_forces)[3]; // N per triangle, tension positive, edge k opposite corner k; NULL unless simulated

@@ -268,13 +268,22 @@ static double (*unbalanced(const ax_linkage* linkage, const double (*places)[3],
 }
 
 double ax_measure_force_residual(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
-                                 const double (*loads)[3], const unsigned char* supports)
+                                 const double (*loads)[3], const unsigned char* supports, const ax_slide* slides)
 {
     double(*sum)[3] = unbalanced(linkage, places, edge_forces, loads), total = 0, left = 0;
     for (int h = 0; h < linkage->hinge_count; ++h) {
         total += ax_norm3(loads[h]);
         if (!supports[h])
             left += ax_dot3(sum[h], sum[h]);
+        else if (slides && slides[h].freedom != AX_HELD_FAST) {
+            const double* axis = slides[h].axis;
+            double along = ax_dot3(axis, sum[h]);
+            for (int c = 0; c < 3; ++c) {
+                double part = along * axis[c];
+                part = slides[h].freedom == AX_FREE_ALONG ? part : sum[h][c] - part;
+                left += part * part;
+            }
+        }
     }
     ax_free(sum);
     return sqrt(left) / total;

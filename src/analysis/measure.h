@@ -2,7 +2,7 @@
 // checks the solvers.
 #pragma once
 
-#include "ax/linkage.h"
+#include "ax/design.h"
 #include "mesh/closest.h"
 
 // Largest |flat edge / other edge - 1| over all edges; `other` in space.
@@ -32,9 +32,10 @@ void ax_measure_scale(const ax_linkage* linkage, const double (*flat)[2], double
 // 5 %, 50 % and 95 % quantiles of the interior angles of six-hinged holes in space, degrees.
 void ax_measure_hole_angles(const ax_linkage* linkage, const double (*places)[3], double quantile[3]);
 
-// |force| over the free hinges / total load, from places, edge forces (N, per triangle and edge) and hinge loads (N).
+// |force| over the free hinges, and in the free directions of those that slide (`slides` NULL: none does) / total load, from
+// places, edge forces (N, per triangle and edge) and hinge loads (N).
 double ax_measure_force_residual(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
-                                 const double (*loads)[3], const unsigned char* supports);
+                                 const double (*loads)[3], const unsigned char* supports, const ax_slide* slides);
 
 // Largest force that a panel passes on at one hinge, and the sum of the reactions' magnitudes, N.
 void ax_measure_hinge_forces(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],

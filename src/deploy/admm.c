@@ -16,11 +16,11 @@ struct ax_admm {
     const ax_deploy_model* model;
     double rho;
     double (*x)[3];
-    double (*z)[3], (*u)[3]; // per edge: the rigid edge vector and its scaled multiplier
+    double (*z)[3], (*u)[3];     // per edge: the rigid edge vector and its scaled multiplier
     double (*at)[3], (*pull)[3]; // per sliding hinge: its point on the curve or plane and its scaled multiplier
     ax_deploy_frame* frame;
     bool released;
-    ax_vec4* right;          // per free hinge, in elimination order
+    ax_vec4* right; // per free hinge, in elimination order
     double (*gradient)[3];
     double* force;
     int* row; // per free hinge: its place in elimination order

@@ -36,9 +36,8 @@ static void collect_polygons(ax_deploy_model* model, const ax_linkage* linkage)
                     linkage->opening_start[h + 1] - linkage->opening_start[h]);
 }
 
-ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*flat)[2],
-                                     const double (*places)[3], const ax_hold* holds, const double direction[3],
-                                     double* unit_load)
+ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*flat)[2], const double (*places)[3],
+                                     const ax_hold* holds, const double direction[3], double* unit_load)
 {
     int n = linkage->hinge_count;
     ax_deploy_model m = {.hinges = n, .inflated = !direction};
@@ -379,8 +378,7 @@ void ax_deploy_hessian_free(ax_deploy_hessian* h)
 
 // Adds a block of the rows of unknown i and the columns of unknown j <= i, k its index off the diagonal, where each node
 // keeps to the directions that it is allowed.
-static void add_block(ax_deploy_hessian* h, const ax_deploy_frame* frame, int k, int i, int j,
-                      double block[9])
+static void add_block(ax_deploy_hessian* h, const ax_deploy_frame* frame, int k, int i, int j, double block[9])
 {
     int side[2] = {frame ? h->slide[i] : -1, frame ? h->slide[j] : -1};
     if (side[0] >= 0 || side[1] >= 0) {
@@ -388,7 +386,8 @@ static void add_block(ax_deploy_hessian* h, const ax_deploy_frame* frame, int k,
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c) {
                 const double(*p)[3] = side[0] >= 0 ? frame[side[0]].allowed : NULL;
-                keep[r][c] = p ? p[r][0] * block[c] + p[r][1] * block[3 + c] + p[r][2] * block[6 + c] : block[3 * r + c];
+                keep[r][c] =
+                    p ? p[r][0] * block[c] + p[r][1] * block[3 + c] + p[r][2] * block[6 + c] : block[3 * r + c];
             }
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c) {
@@ -452,8 +451,7 @@ static void add_volume(ax_deploy_hessian* h, const ax_deploy_model* m, const dou
 }
 
 void ax_deploy_hessian_fill(ax_deploy_hessian* h, const ax_deploy_model* m, const double (*x)[3],
-                            const ax_deploy_frame* frame, const double* force,
-                            double shift, double mu)
+                            const ax_deploy_frame* frame, const double* force, double shift, double mu)
 {
     ax_blocks_clear(&h->blocks);
     const double identity[9] = {shift, 0, 0, 0, shift, 0, 0, 0, shift};

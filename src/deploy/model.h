@@ -46,9 +46,8 @@ typedef struct ax_deploy_model {
 // opened where they start, so that they keep their spread along it, and then released.
 // `direction` is the unit vector of gravity, NULL for inflation. `unit_load` receives the document's own load for solver load
 // 1: for gravity the panel area (times density and g it is N), for inflation four times it (times pressure).
-ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*flat)[2],
-                                     const double (*places)[3], const ax_hold* holds, const double direction[3],
-                                     double* unit_load);
+ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*flat)[2], const double (*places)[3],
+                                     const ax_hold* holds, const double direction[3], double* unit_load);
 void ax_deploy_model_free(ax_deploy_model* model);
 
 // Is a hinge held at a known place at first, fixed or on a curve?
@@ -68,7 +67,8 @@ double ax_deploy_parameter(const ax_deploy_model* model, int h, const double x[3
 // corner or an end towards which it is pulled from both sides.
 typedef struct ax_deploy_frame {
     double allowed[3][3];
-    double bend; // second derivative of `gradient` . x along the curve, which bends the energy though its gradient is constant
+    double
+        bend; // second derivative of `gradient` . x along the curve, which bends the energy though its gradient is constant
 } ax_deploy_frame;
 // `gradient` of the Lagrangian, per hinge.
 void ax_deploy_frames(const ax_deploy_model* model, const double (*x)[3], const double (*gradient)[3],

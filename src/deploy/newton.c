@@ -54,9 +54,8 @@ void ax_newton_free(ax_newton* s)
 {
     if (!s)
         return;
-    void* blocks[] = {s->y, s->work,    s->gradient,    s->d,      s->move, s->right,
-                      s->c, s->trial_c, s->trial_force, s->change, s->jd,   s->frame,
-                      s->trial_frame};
+    void* blocks[] = {s->y,       s->work,        s->gradient, s->d,  s->move,  s->right,      s->c,
+                      s->trial_c, s->trial_force, s->change,   s->jd, s->frame, s->trial_frame};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_deploy_hessian_free(&s->hessian);
@@ -242,8 +241,8 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
             for (int e = 0; e < edges; ++e)
                 s->trial_force[e] = force[e] + t * s->change[e];
             if (t == 1) { // where Newton contracts at once, nothing else is needed
-                trial_energy = lagrangian_gradient(s, (const double(*)[3])s->y, s->trial_force, s->trial_frame,
-                                                   s->move);
+                trial_energy =
+                    lagrangian_gradient(s, (const double(*)[3])s->y, s->trial_force, s->trial_frame, s->move);
                 double now = dot(3 * n, s->move[0], s->move[0]) +
                              100 * stiffness * stiffness * dot(edges, s->trial_c, s->trial_c);
                 if ((now < 0.1 * residual_merit && shift < 1e-2 * stiffness) || now < 1e-24) {
@@ -303,7 +302,7 @@ void ax_newton_fit_forces(ax_newton* s, const double (*x)[3], double* force)
     const ax_deploy_model* m = s->model;
     memset(force, 0, (size_t)m->edge_count * sizeof *force);
     lagrangian_gradient(s, x, force, s->frame, s->right); // tells which way hinges can slide
-    if (!factorise(s, x, force, 1e-7, 1)) // J'J + 1e-7 I
+    if (!factorise(s, x, force, 1e-7, 1))                 // J'J + 1e-7 I
         return;
     for (int round = 0; round < 3; ++round) {
         lagrangian_gradient(s, x, force, s->frame, s->right);

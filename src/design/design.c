@@ -82,6 +82,7 @@ void ax_design_free(ax_design* design)
     ax_free(design->simulated);
     ax_free(design->scale);
     ax_free(design->supports);
+    ax_free(design->slides);
     ax_free(design->forces);
     ax_free(design->edge_forces);
     *design = (ax_design){0};

@@ -77,7 +77,7 @@ static void measure_simulated(const ax_design* design, ax_report* r)
 
     const double(*forces)[3] = (const double(*)[3])design->edge_forces,
           (*loads)[3] = (const double(*)[3])design->forces;
-    r->force_residual = ax_measure_force_residual(linkage, places, forces, loads, design->supports);
+    r->force_residual = ax_measure_force_residual(linkage, places, forces, loads, design->supports, design->slides);
     ax_measure_hinge_forces(linkage, places, forces, loads, design->supports, &r->hinge_force_max, &r->reaction_total);
     r->load_total = r->compressed_share = 0;
     for (int h = 0; h < linkage->hinge_count; ++h)

@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "base/vec.h"
-#include "deploy/deploy.h"
+#include "design/simulate.h"
 #include "mesh/geometry.h"
 
 #include <ctype.h>
@@ -17,9 +17,30 @@ static void clear_simulated(ax_design* design)
     ax_free(design->simulated);
     ax_free(design->forces);
     ax_free(design->edge_forces);
+    ax_free(design->slides);
+    design->slides = NULL;
     design->simulated = NULL;
     design->forces = NULL;
     design->edge_forces = NULL;
+}
+
+// Which way a hinge can move from where it came to rest: not at all at a corner or an end of its curve.
+static ax_slide free_directions(const ax_hold* hold, const double place[3])
+{
+    ax_slide slide = {.freedom = AX_FREE_ACROSS};
+    if (hold->kind == AX_HOLD_IN_PLANE) {
+        memcpy(slide.axis, hold->normal, sizeof slide.axis);
+        return slide;
+    }
+    ax_curve_range range = ax_curve_extent(hold->curve);
+    double on[3], second[3], t = ax_curve_nearest(hold->curve, place, on);
+    ax_curve_derivatives(hold->curve, t, slide.axis, second);
+    double speed = ax_norm3(slide.axis);
+    bool end = (!range.closed && (t <= range.from || t >= range.to)) || (!range.smooth && fabs(t - round(t)) < 1e-9);
+    slide.freedom = end || !(speed > 0) ? AX_HELD_FAST : AX_FREE_ALONG;
+    for (int c = 0; c < 3 && speed > 0; ++c)
+        slide.axis[c] /= speed;
+    return slide;
 }
 
 // Loads and edge forces in newton from the solution of load 1.
@@ -37,8 +58,14 @@ static void keep_solution(ax_design* design, const ax_deploy_model* model, const
             design->forces[h][c] *= -newton;
         }
     for (int h = 0; h < n; ++h)
-        if (design->supports[h]) // to the last bit where they are held
+        if (model->hold[h].kind == AX_HOLD_FIXED) // to the last bit where they are held
             memcpy(design->simulated[h], design->deployed[h], sizeof design->simulated[h]);
+    if (model->slide_count)
+        design->slides = AX_NEW0(ax_slide, n);
+    for (int k = 0; k < model->slide_count; ++k) {
+        int h = model->slide[k];
+        design->slides[h] = free_directions(&model->hold[h], design->simulated[h]);
+    }
     for (int e = 0; e < model->edge_count; ++e)
         design->edge_forces[model->edge_source[e] / 3][model->edge_source[e] % 3] = force[e] * newton;
 }
@@ -58,6 +85,17 @@ static const char* what_to_try(const ax_design* design)
 
 ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_progress* progress, ax_error* error)
 {
+    ax_hold* holds = AX_NEW0(ax_hold, design->linkage.hinge_count);
+    for (int h = 0; h < design->linkage.hinge_count; ++h)
+        holds[h].kind = design->supports[h] ? AX_HOLD_FIXED : AX_HOLD_FREE;
+    ax_status status = ax_design_simulate_held(design, load, holds, progress, error);
+    ax_free(holds);
+    return status;
+}
+
+ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const ax_hold* holds,
+                                  const ax_progress* progress, ax_error* error)
+{
     clear_simulated(design);
     design->load = *load;
     if (load->kind == AX_LOAD_NONE) {
@@ -65,19 +103,17 @@ ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_pr
         return AX_OK;
     }
     int held = 0;
-    for (int h = 0; h < design->linkage.hinge_count; ++h)
-        held += design->supports[h];
+    for (int h = 0; h < design->linkage.hinge_count; ++h) {
+        design->supports[h] = holds[h].kind != AX_HOLD_FREE;
+        held += holds[h].kind == AX_HOLD_FIXED || holds[h].kind == AX_HOLD_ON_CURVE;
+    }
     if (held < 3)
         return ax_fail(error, AX_USAGE, "%d hinges are supported; at least three are needed to hold the shell.", held);
     bool gravity = load->kind == AX_LOAD_GRAVITY;
     double metre = ax_unit_in_metres(design->unit), unit_load, start = ax_seconds();
-    ax_hold* holds = AX_NEW0(ax_hold, design->linkage.hinge_count);
-    for (int h = 0; h < design->linkage.hinge_count; ++h)
-        holds[h].kind = design->supports[h] ? AX_HOLD_FIXED : AX_HOLD_FREE;
     ax_deploy_model model =
         ax_deploy_model_make(&design->linkage, (const double(*)[2])design->flat, (const double(*)[3])design->deployed,
                              holds, gravity ? load->direction : NULL, &unit_load);
-    ax_free(holds);
     double newton = unit_load * metre * metre * (gravity ? load->density * standard_gravity : load->pressure);
     double(*x)[3] = ax_alloc((size_t)model.hinges, sizeof *x), *force = AX_NEW0(double, model.edge_count);
     ax_deployment result;
@@ -87,6 +123,19 @@ ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_pr
         status = ax_fail(error, AX_CANCELLED, "Cancelled.");
     else if (result.exact)
         keep_solution(design, &model, (const double(*)[3])x, force, newton);
+    else if (result.gathered)
+        status = ax_fail(
+            error, AX_CANNOT_REALISE,
+            "The rim gathers on one side of the curve that it slides on: the curve is longer than the open linkage can "
+            "reach round, and the largest gap grew to %.0f times the mean. Shorten the curve, fix some hinges, or "
+            "raise "
+            "the scale factors.",
+            result.gap_most);
+    else if (result.gap_least < -1e-9)
+        status =
+            ax_fail(error, AX_FAILED,
+                    "Rim hinges would pass each other on the curve that they slide on, which panels cannot do. Fix "
+                    "some of them, or choose a curve with gentler bends.");
     else if (result.force_over_tension > 100 && result.residuals.edge > 1e-3)
         status = ax_fail(
             error, AX_CANNOT_REALISE,
