@@ -1,35 +1,37 @@
 // sphere: keeps points on one sphere: algebraic fit of the centre (Kasa 1976 in three dimensions), then radially; the
-// mean of the result, which no equation sees, is taken out. Coplanar points get the sphere through their circle.
+// mean of the result, which no equation sees, is taken out. Coplanar points get the sphere about the centre of their circle.
 #include "constraint/eigen3.h"
 
-// Added to the normal matrix in units of its trace: centres across the plane of coplanar points stay finite.
-static const double RIDGE = 1e-15;
+// Share of the squares below which points have no extent along an axis. The centre could then lie anywhere on it; it
+// stays in the plane of the points, so that they stay there too.
+static const double FLAT = 1e-10;
 
 static void project(const ax_lane* restrict block, const ax_place* place, int points, const ax_lane3* restrict y,
                     ax_lane3* restrict p)
 {
     (void)block, (void)place;
-    ax_lane sum[6] = {0}, c[3] = {0}, mean[3] = {0}, radius;
+    ax_lane3 axis[3], c = {{0}};
+    ax_lane mean[3] = {0}, trace = {0}, radius;
+    ax_principal_axes(points, y, axis);
     for (int k = 0; k < points; ++k)
+        for (int l = 0; l < AX_W; ++l)
+            trace[l] += y[k][0][l] * y[k][0][l] + y[k][1][l] * y[k][1][l] + y[k][2][l] * y[k][2][l];
+    for (int a = 0; a < 3; ++a) { // the normal equations are diagonal along the axes
+        ax_lane moment = {0}, side = {0};
+        for (int k = 0; k < points; ++k)
+            for (int l = 0; l < AX_W; ++l) {
+                double square = y[k][0][l] * y[k][0][l] + y[k][1][l] * y[k][1][l] + y[k][2][l] * y[k][2][l];
+                double along = axis[a][0][l] * y[k][0][l] + axis[a][1][l] * y[k][1][l] + axis[a][2][l] * y[k][2][l];
+                moment[l] += along * along, side[l] += along * (square / (trace[l] > 0 ? trace[l] : 1));
+            }
         for (int l = 0; l < AX_W; ++l) {
-            double a = y[k][0][l], b = y[k][1][l], d = y[k][2][l], square = a * a + b * b + d * d;
-            sum[0][l] += a * a, sum[1][l] += a * b, sum[2][l] += a * d;
-            sum[3][l] += b * b, sum[4][l] += b * d, sum[5][l] += d * d;
-            c[0][l] += a * square, c[1][l] += b * square, c[2][l] += d * square;
+            double share = moment[l] / (trace[l] > 0 ? trace[l] : 1), at = share > FLAT ? 0.5 * side[l] / share : 0;
+            for (int i = 0; i < 3; ++i)
+                c[i][l] += at * axis[a][i][l];
         }
-    for (int l = 0; l < AX_W; ++l) {
-        // 3 x 3 Cholesky (LDL') of the moments in units of their trace
-        double trace = sum[0][l] + sum[3][l] + sum[5][l], s = trace > 0 ? 1 / trace : 0, h = 0.5 * s;
-        double d0 = sum[0][l] * s + RIDGE, a = sum[1][l] * s / d0, b = sum[2][l] * s / d0;
-        double d1 = sum[3][l] * s - a * a * d0, e = sum[4][l] * s - a * b * d0;
-        d1 = (d1 > 0 ? d1 : 0) + RIDGE, e /= d1;
-        double d2 = sum[5][l] * s - b * b * d0 - e * e * d1;
-        d2 = (d2 > 0 ? d2 : 0) + RIDGE;
-        double x = h * c[0][l], y1 = h * c[1][l] - a * x, z = (h * c[2][l] - b * x - e * y1) / d2;
-        y1 = y1 / d1 - e * z, x = x / d0 - a * y1 - b * z;
-        c[0][l] = x, c[1][l] = y1, c[2][l] = z;
-        radius[l] = sqrt(x * x + y1 * y1 + z * z + trace / points);
     }
+    for (int l = 0; l < AX_W; ++l)
+        radius[l] = sqrt(c[0][l] * c[0][l] + c[1][l] * c[1][l] + c[2][l] * c[2][l] + trace[l] / points);
     for (int k = 0; k < points; ++k)
         for (int l = 0; l < AX_W; ++l) {
             double u = y[k][0][l] - c[0][l], v = y[k][1][l] - c[1][l], w = y[k][2][l] - c[2][l];
