@@ -1,4 +1,4 @@
-#include "solver/solver.h"
+#include "solver/internal.h"
 
 #include "base/bucket.h"
 #include "base/clock.h"
@@ -7,61 +7,23 @@
 #include <assert.h>
 #include <string.h>
 
-enum { CHUNK = 64, POINTS_PER_TASK = 4096 }; // blocks of constraints and points that one task takes
-
-// Constraints of one type and size, AX_W to a block. Their order within the group follows the points in elimination order, so that
-// neighbours in memory work on neighbours in space.
-typedef struct group {
-    const ax_constraint_type* type;
-    const ax_place* place;
-    int points_each, count, blocks;
-    double weight;
-    bool soft;          // no multipliers
-    int* points;        // count x points_each, as given
-    int* slot;          // constraint -> slot; slot / AX_W is its block, slot % AX_W its lane
-    int* index;         // per block: [point][lane], places in elimination order; spare lanes repeat the last constraint
-    ax_lane* parameter; // per block: type->lanes
-    ax_lane3* dual;     // per block: rows
-    int first_row;      // of its contributions
-    int rows;           // per constraint: rows of A; contributions: rows for edges, else one per point
-    int contributions;
-} group;
-
-struct ax_solver {
-    int n, group_count;
-    group* groups;
-    ax_pool* pool;
-    double (*start)[3]; // rest places as given, for the elimination order
-    // everything below in elimination order
-    int *order, *position;
-    ax_vec4 *x, *base, *momentum, *velocity, *load;
-    ax_vec4* row; // contributions w A'p of all constraints
-    int row_count;
-    int *incident_start, *incident; // per point: contribution row << 1 | sign
-    ax_panels* panels;
-    ax_dynamics dynamics;
-    bool dynamic, multipliers;
-    bool pattern_changed, values_changed;
-    int active_group;
-    ax_solver_counters counters;
-};
-
 ax_solver* ax_solver_make(int points, const double (*places)[3], ax_pool* pool)
 {
     ax_solver* s = AX_NEW0(ax_solver, 1);
     size_t n = (size_t)points;
     s->n = points;
     s->pool = pool;
+    s->load_factor = 1;
     s->start = ax_copy(places, n, sizeof *s->start);
+    s->stiffness = AX_NEW0(double, points);
     s->order = AX_NEW(int, points);
     s->position = AX_NEW(int, points);
+    s->held = AX_NEW0(unsigned char, points);
     s->x = ax_alloc_aligned(n, sizeof *s->x);
     s->base = ax_alloc_aligned(n, sizeof *s->x);
-    s->momentum = ax_alloc_aligned(n, sizeof *s->x);
+    s->kept = ax_alloc_aligned(n, sizeof *s->x);
     s->velocity = ax_alloc_aligned(n, sizeof *s->x);
-    s->load = ax_alloc_aligned(n, sizeof *s->x);
     memset(s->velocity, 0, n * sizeof *s->x);
-    memset(s->load, 0, n * sizeof *s->x);
     for (int v = 0; v < points; ++v)
         s->order[v] = s->position[v] = v;
     s->pattern_changed = s->values_changed = true;
@@ -69,138 +31,66 @@ ax_solver* ax_solver_make(int points, const double (*places)[3], ax_pool* pool)
     return s;
 }
 
-static void free_group(group* g)
+static elements make_elements(int points_each, int count, const int* points, int rows_each)
 {
-    void* blocks[] = {g->points, g->slot, g->index, g->parameter, g->dual};
-    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
-        ax_free(blocks[k]);
+    elements e = {.points_each = points_each, .count = count, .rows_each = rows_each};
+    e.blocks = (count + AX_W - 1) / AX_W;
+    e.points = ax_copy(points, (size_t)count * (size_t)points_each, sizeof *points);
+    e.slot = AX_NEW(int, count);
+    e.index = AX_NEW(int, (size_t)e.blocks*(size_t)points_each* AX_W);
+    for (int c = 0; c < count; ++c)
+        e.slot[c] = c;
+    return e;
+}
+
+static void free_elements(elements* e)
+{
+    ax_free(e->points);
+    ax_free(e->slot);
+    ax_free(e->index);
 }
 
 void ax_solver_free(ax_solver* s)
 {
     if (!s)
         return;
-    for (int k = 0; k < s->group_count; ++k)
-        free_group(s->groups + k);
-    void* blocks[] = {s->groups,   s->start, s->order, s->position,       s->x,       s->base, s->momentum,
-                      s->velocity, s->load,  s->row,   s->incident_start, s->incident};
+    for (int k = 0; k < s->group_count; ++k) {
+        free_elements(&s->groups[k].e);
+        ax_free(s->groups[k].parameter);
+        ax_free(s->groups[k].dual);
+    }
+    for (int k = 0; k < s->load_count; ++k) {
+        for (int c = 0; c < s->loads[k].class_count; ++c) {
+            free_elements(&s->loads[k].classes[c].e);
+            ax_free(s->loads[k].classes[c].area);
+        }
+        ax_free(s->loads[k].classes);
+    }
+    void* blocks[] = {s->groups,         s->loads,    s->start,  s->point_force, s->stiffness, s->order, s->position,
+                      s->held,           s->x,        s->base,   s->velocity,    s->kept,      s->dead,  s->row,
+                      s->incident_start, s->incident, s->tallies};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
+    ax_sparse_free(&s->held_matrix);
     ax_panels_free(s->panels);
     ax_free(s);
-}
-
-// Places of the points of a block, one lane each.
-static void gather(const ax_solver* s, const group* g, int block, ax_lane3* x)
-{
-    const int* index = g->index + (size_t)block * (size_t)g->points_each * AX_W;
-    for (int k = 0; k < g->points_each; ++k)
-        for (int l = 0; l < AX_W; ++l) {
-            const double* at = s->x[index[k * AX_W + l]];
-            x[k][0][l] = at[0], x[k][1][l] = at[1], x[k][2][l] = at[2];
-        }
-}
-
-// Rows y = A x of a block.
-static void form_rows(const group* g, const ax_lane3* x, ax_lane3* y)
-{
-    int n = g->points_each;
-    switch (g->type->pattern) {
-    case AX_ROWS_POINTS:
-        memcpy(y, x, (size_t)n * sizeof *y);
-        return;
-    case AX_ROWS_CENTRED:
-        for (int c = 0; c < 3; ++c)
-            for (int l = 0; l < AX_W; ++l) {
-                double mean = 0;
-                for (int k = 0; k < n; ++k)
-                    mean += x[k][c][l];
-                mean /= n;
-                for (int k = 0; k < n; ++k)
-                    y[k][c][l] = x[k][c][l] - mean;
-            }
-        return;
-    case AX_ROWS_EDGES:
-        for (int r = 0; r < n / 2; ++r)
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l)
-                    y[r][c][l] = x[2 * r + 1][c][l] - x[2 * r][c][l];
-        return;
-    case AX_ROWS_ARMS:
-        for (int r = 0; r < n - 1; ++r)
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l)
-                    y[r][c][l] = x[r + 1][c][l] - x[0][c][l];
-        return;
-    case AX_ROWS_SUM:
-        memset(y, 0, sizeof *y);
-        for (int k = 0; k < n; ++k) {
-            double coefficient = g->type->coefficient(n, k);
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l)
-                    y[0][c][l] += coefficient * x[k][c][l];
-        }
-    }
-}
-
-// Contributions w A'z per point (per row for edges, whose points take it with opposite signs).
-static void form_contributions(const group* g, const ax_lane3* z, ax_lane3* out)
-{
-    int n = g->points_each;
-    double w = g->weight;
-    switch (g->type->pattern) {
-    case AX_ROWS_POINTS:
-    case AX_ROWS_EDGES:
-        for (int r = 0; r < g->rows; ++r)
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l)
-                    out[r][c][l] = w * z[r][c][l];
-        return;
-    case AX_ROWS_CENTRED: // projections of centred rows are centred, so A'z = z
-        for (int k = 0; k < n; ++k)
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l)
-                    out[k][c][l] = w * z[k][c][l];
-        return;
-    case AX_ROWS_ARMS:
-        memset(out, 0, sizeof *out);
-        for (int r = 0; r < n - 1; ++r)
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l) {
-                    out[r + 1][c][l] = w * z[r][c][l];
-                    out[0][c][l] -= w * z[r][c][l];
-                }
-        return;
-    case AX_ROWS_SUM:
-        for (int k = 0; k < n; ++k) {
-            double coefficient = w * g->type->coefficient(n, k);
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l)
-                    out[k][c][l] = coefficient * z[0][c][l];
-        }
-    }
 }
 
 int ax_solver_add(ax_solver* s, const ax_constraint_type* type, int points_each, int count, const int* points,
                   double weight, const ax_place* place)
 {
     assert(points_each >= type->least_points && points_each <= type->most_points && points_each <= AX_MOST_POINTS);
-    assert(count > 0 && weight > 0);
+    assert(count > 0 && (weight > 0 || type->eliminated));
+    assert(!type->eliminated || points_each == 1);
     s->groups = ax_realloc(s->groups, (size_t)s->group_count + 1, sizeof *s->groups);
     group* g = s->groups + s->group_count;
-    *g = (group){.type = type, .place = place, .points_each = points_each, .count = count, .weight = weight};
-    g->blocks = (count + AX_W - 1) / AX_W;
-    g->rows = ax_row_count(type, points_each);
-    g->contributions = type->pattern == AX_ROWS_EDGES ? g->rows : points_each;
-    g->points = ax_copy(points, (size_t)count * (size_t)points_each, sizeof *points);
-    g->slot = AX_NEW(int, count);
-    g->index = AX_NEW(int, (size_t)g->blocks*(size_t)points_each* AX_W);
-    g->parameter = ax_alloc_aligned((size_t)g->blocks * (size_t)(type->lanes ? type->lanes : 1), sizeof *g->parameter);
-    g->dual = ax_alloc_aligned((size_t)g->blocks * (size_t)g->rows, sizeof *g->dual);
-    memset(g->dual, 0, (size_t)g->blocks * (size_t)g->rows * sizeof *g->dual);
-    for (int c = 0; c < count; ++c)
-        g->slot[c] = c;
-    for (int b = 0; b < g->blocks; ++b) {
+    *g = (group){.type = type, .place = place, .weight = weight, .rows = ax_row_count(type, points_each)};
+    g->e = make_elements(points_each, count, points, type->pattern == AX_ROWS_EDGES ? g->rows : points_each);
+    size_t blocks = (size_t)g->e.blocks, rows = (size_t)g->rows;
+    g->parameter = ax_alloc_aligned(blocks * (size_t)(type->lanes ? type->lanes : 1), sizeof *g->parameter);
+    g->dual = ax_alloc_aligned(blocks * rows, sizeof *g->dual);
+    memset(g->dual, 0, blocks * rows * sizeof *g->dual);
+    for (int b = 0; b < g->e.blocks; ++b) {
         ax_lane3 x[AX_MOST_POINTS];
         ax_lane* block = g->parameter + (size_t)b * (size_t)type->lanes;
         for (int l = 0; l < AX_W; ++l) {
@@ -231,14 +121,14 @@ void ax_solver_set_weight(ax_solver* s, int k, double weight)
 void ax_solver_set(ax_solver* s, int k, int constraint, int lane, double value)
 {
     group* g = s->groups + k;
-    assert(constraint < g->count && lane < g->type->lanes);
-    int slot = g->slot[constraint], last = g->count - 1;
+    assert(constraint < g->e.count && lane < g->type->lanes);
+    int slot = g->e.slot[constraint], last = g->e.count - 1;
     ax_lane* block = g->parameter + (size_t)(slot / AX_W) * (size_t)g->type->lanes;
     block[lane][slot % AX_W] = value;
     for (int l = last % AX_W + 1; slot == last && l < AX_W; ++l)
         block[lane][l] = value; // spare lanes repeat the last constraint
     if (g->type->prepare)
-        g->type->prepare(block, g->points_each);
+        g->type->prepare(block, g->e.points_each);
 }
 
 void ax_solver_set_all(ax_solver* s, int k, int first, int lanes, const double* values)
@@ -246,22 +136,22 @@ void ax_solver_set_all(ax_solver* s, int k, int first, int lanes, const double* 
     group* g = s->groups + k;
     assert(first + lanes <= g->type->lanes);
     size_t each = (size_t)g->type->lanes;
-    for (int c = 0; c < g->count; ++c) {
-        int slot = g->slot[c];
+    for (int c = 0; c < g->e.count; ++c) {
+        int slot = g->e.slot[c];
         ax_lane* block = g->parameter + (size_t)(slot / AX_W) * each + (size_t)first;
-        int end = slot == g->count - 1 ? AX_W : slot % AX_W + 1; // spare lanes repeat the last constraint
+        int end = slot == g->e.count - 1 ? AX_W : slot % AX_W + 1; // spare lanes repeat the last constraint
         for (int i = 0; i < lanes; ++i)
             for (int l = slot % AX_W; l < end; ++l)
                 block[i][l] = values[(size_t)c * (size_t)lanes + (size_t)i];
     }
-    for (int b = 0; b < g->blocks && g->type->prepare; ++b)
-        g->type->prepare(g->parameter + (size_t)b * each, g->points_each);
+    for (int b = 0; b < g->e.blocks && g->type->prepare; ++b)
+        g->type->prepare(g->parameter + (size_t)b * each, g->e.points_each);
 }
 
 double ax_solver_get(const ax_solver* s, int k, int constraint, int lane)
 {
     const group* g = s->groups + k;
-    int slot = g->slot[constraint];
+    int slot = g->e.slot[constraint];
     return g->parameter[(size_t)(slot / AX_W) * (size_t)g->type->lanes + (size_t)lane][slot % AX_W];
 }
 
@@ -279,11 +169,100 @@ void ax_solver_get_places(const ax_solver* s, double (*places)[3])
         memcpy(places[v], s->x[s->position[v]], sizeof *places);
 }
 
+// Vector area of a polygon, halved.
+static double loop_area(const ax_solver* s, const double (*places)[3], int count, const int* loop)
+{
+    double sum[3] = {0}, side[2][3], part[3];
+    const double* from = places ? places[loop[0]] : s->x[s->position[loop[0]]];
+    for (int k = 1; k + 1 < count; ++k) {
+        for (int end = 0; end < 2; ++end)
+            ax_sub3(places ? places[loop[k + end]] : s->x[s->position[loop[k + end]]], from, side[end]);
+        ax_cross(side[0], side[1], part);
+        for (int d = 0; d < 3; ++d)
+            sum[d] += part[d] / 2;
+    }
+    return ax_norm3(sum);
+}
+
+void ax_solver_measure_load(ax_solver* s, int k, const double (*places)[3])
+{
+    for (int c = 0; c < s->loads[k].class_count; ++c) {
+        load_class* class = s->loads[k].classes + c;
+        const elements* e = &class->e;
+        for (int loop = 0; loop < e->count; ++loop) {
+            double area = loop_area(s, places, e->points_each, e->points + (size_t)loop * (size_t)e->points_each);
+            class->area[e->slot[loop] / AX_W][e->slot[loop] % AX_W] = area;
+        }
+        for (int l = live_lanes(e, e->blocks - 1); l < AX_W; ++l)
+            class->area[e->blocks - 1][l] = 0;
+    }
+    s->dead_changed = s->dead_changed || !s->loads[k].type->follows;
+}
+
+int ax_solver_add_load(ax_solver* s, const ax_load_type* type, int loops, const int* start, const int* points)
+{
+    assert(loops > 0 && type->values <= AX_MOST_LOAD_VALUES);
+    s->loads = ax_realloc(s->loads, (size_t)s->load_count + 1, sizeof *s->loads);
+    load* f = s->loads + s->load_count;
+    *f = (load){.type = type};
+    for (int k = 0; k < type->parameter_count; ++k)
+        for (int i = 0; i < type->parameters[k].lanes; ++i)
+            f->value[type->parameters[k].offset + i] = type->parameters[k].standard;
+    double centre[3] = {0};
+    int most = 0;
+    for (int k = start[0]; k < start[loops]; ++k)
+        for (int d = 0; d < 3; ++d)
+            centre[d] += s->x[s->position[points[k]]][d] / (start[loops] - start[0]);
+    if (type->rest)
+        type->rest(f->value, centre);
+    for (int k = 0; k < loops; ++k)
+        most = start[k + 1] - start[k] > most ? start[k + 1] - start[k] : most;
+    assert(most <= AX_MOST_POINTS);
+    f->classes = ax_calloc((size_t)most, sizeof *f->classes);
+    int* same = AX_NEW(int, start[loops] - start[0]);
+    for (int size = 3; size <= most; ++size) {
+        int count = 0;
+        for (int k = 0; k < loops; ++k)
+            if (start[k + 1] - start[k] == size)
+                memcpy(same + size * count++, points + start[k], (size_t)size * sizeof *same);
+        if (!count)
+            continue;
+        load_class* class = f->classes + f->class_count++;
+        class->e = make_elements(size, count, same, size);
+        class->area = ax_alloc_aligned((size_t) class->e.blocks, sizeof *class->area);
+    }
+    ax_free(same);
+    s->rows_changed = true;
+    ax_solver_measure_load(s, s->load_count, NULL);
+    return s->load_count++;
+}
+
+void ax_solver_set_load_value(ax_solver* s, int k, int at, double value)
+{
+    assert(at < s->loads[k].type->values);
+    s->loads[k].value[at] = value;
+    s->dead_changed = s->dead_changed || !s->loads[k].type->follows;
+}
+
+double ax_solver_get_load_value(const ax_solver* s, int k, int at)
+{
+    return s->loads[k].value[at];
+}
+
 void ax_solver_set_load(ax_solver* s, const double (*force)[3])
 {
-    for (int v = 0; v < s->n; ++v)
-        for (int c = 0; c < 3; ++c)
-            s->load[s->position[v]][c] = force ? force[v][c] : 0;
+    if (!s->point_force)
+        s->point_force = ax_alloc((size_t)s->n, sizeof *s->point_force);
+    if (force)
+        memcpy(s->point_force, force, (size_t)s->n * sizeof *force);
+    else
+        memset(s->point_force, 0, (size_t)s->n * sizeof *force);
+    s->dead_changed = true;
+}
+
+void ax_solver_scale_loads(ax_solver* s, double factor)
+{
+    s->load_factor = factor;
 }
 
 void ax_solver_set_dynamics(ax_solver* s, const ax_dynamics* dynamics)
@@ -304,8 +283,13 @@ void ax_solver_reset_multipliers(ax_solver* s)
 {
     for (int k = 0; k < s->group_count; ++k) {
         group* g = s->groups + k;
-        memset(g->dual, 0, (size_t)g->blocks * (size_t)g->rows * sizeof *g->dual);
+        memset(g->dual, 0, (size_t)g->e.blocks * (size_t)g->rows * sizeof *g->dual);
     }
+}
+
+void ax_solver_cap_multipliers(ax_solver* s, double length)
+{
+    s->cap = length;
 }
 
 void ax_solver_set_soft(ax_solver* s, int k, bool soft)
@@ -317,21 +301,21 @@ size_t ax_solver_multiplier_count(const ax_solver* s)
 {
     size_t count = 0;
     for (int k = 0; k < s->group_count; ++k)
-        count += 3 * (size_t)s->groups[k].count * (size_t)s->groups[k].rows;
+        count += 3 * (size_t)s->groups[k].e.count * (size_t)s->groups[k].rows;
     return count;
 }
 
 // Multiplier of one row of a constraint, coordinate c.
 static double* multiplier(const group* g, int constraint, int row, int c)
 {
-    int slot = g->slot[constraint];
+    int slot = g->e.slot[constraint];
     return g->dual[(size_t)(slot / AX_W) * (size_t)g->rows + (size_t)row][c] + slot % AX_W;
 }
 
 void ax_solver_get_multipliers(const ax_solver* s, double* out)
 {
     for (int k = 0; k < s->group_count; ++k)
-        for (int c = 0; c < s->groups[k].count; ++c)
+        for (int c = 0; c < s->groups[k].e.count; ++c)
             for (int r = 0; r < s->groups[k].rows; ++r)
                 for (int d = 0; d < 3; ++d)
                     *out++ = *multiplier(s->groups + k, c, r, d);
@@ -340,7 +324,7 @@ void ax_solver_get_multipliers(const ax_solver* s, double* out)
 void ax_solver_set_multipliers(ax_solver* s, const double* from)
 {
     for (int k = 0; k < s->group_count; ++k)
-        for (int c = 0; c < s->groups[k].count; ++c)
+        for (int c = 0; c < s->groups[k].e.count; ++c)
             for (int r = 0; r < s->groups[k].rows; ++r)
                 for (int d = 0; d < 3; ++d)
                     *multiplier(s->groups + k, c, r, d) = *from++;
@@ -363,14 +347,17 @@ static double mass_term(const ax_solver* s)
     return s->dynamic ? s->dynamics.mass / (s->dynamics.time_step * s->dynamics.time_step) : 0;
 }
 
-static ax_sparse assemble(const ax_solver* s)
+// The matrix, with the rows and columns of held points (as given) those of the identity; what they had goes to `held_matrix`.
+static ax_sparse assemble(ax_solver* s, const unsigned char* held)
 {
-    ax_entries entries = {0};
+    ax_entries entries = {0}, apart = {0};
     for (int v = 0; v < s->n; ++v)
-        ax_entries_add(&entries, v, v, mass_term(s));
+        ax_entries_add(&entries, v, v, held[v] ? 1 : mass_term(s));
     for (int k = 0; k < s->group_count; ++k) {
         const group* g = s->groups + k;
-        int n = g->points_each;
+        if (g->type->eliminated)
+            continue;
+        int n = g->e.points_each;
         double* product = AX_NEW0(double, n* n); // A'A, the same for every constraint of the group
         for (int r = 0; r < g->rows; ++r)
             for (int a = 0; a < n; ++a) {
@@ -378,106 +365,170 @@ static ax_sparse assemble(const ax_solver* s)
                 for (int b = 0; b <= a && at_a != 0; ++b)
                     product[a * n + b] += at_a * ax_row_coefficient(g->type, n, r, b);
             }
-        for (int c = 0; c < g->count; ++c)
+        for (int c = 0; c < g->e.count; ++c)
             for (int a = 0; a < n; ++a)
                 for (int b = 0; b <= a; ++b)
                     if (product[a * n + b] != 0) {
-                        int i = g->points[c * n + a], j = g->points[c * n + b];
+                        int i = g->e.points[c * n + a], j = g->e.points[c * n + b];
+                        if (held[i] && held[j])
+                            continue;
                         // a point that stands twice in a constraint meets itself: both halves fall on the diagonal
                         double twice = a != b && i == j ? 2 : 1;
-                        ax_entries_add(&entries, i, j, twice * g->weight * product[a * n + b]);
+                        ax_entries_add(held[i] || held[j] ? &apart : &entries, i, j,
+                                       twice * g->weight * product[a * n + b]);
                     }
         ax_free(product);
     }
-    return ax_entries_sparse(&entries, s->n);
+    ax_sparse_free(&s->held_matrix);
+    s->held_matrix = ax_entries_sparse(&apart, s->n);
+    ax_sparse matrix = ax_entries_sparse(&entries, s->n);
+    for (int v = 0; v < s->n; ++v)
+        s->stiffness[v] = matrix.value[matrix.start[v]];
+    return matrix;
+}
+
+static unsigned char* find_held(const ax_solver* s)
+{
+    unsigned char* held = AX_NEW0(unsigned char, s->n);
+    for (int k = 0; k < s->group_count; ++k)
+        for (int c = 0; s->groups[k].type->eliminated && c < s->groups[k].e.count; ++c)
+            held[s->groups[k].e.points[c]] = 1;
+    return held;
 }
 
 // Moves all per-point state to a new elimination order.
-static void reorder(ax_solver* s, const int* order)
+static void reorder(ax_solver* s, const int* order, const unsigned char* held)
 {
     int* position = AX_NEW(int, s->n);
     for (int k = 0; k < s->n; ++k)
         position[order[k]] = k;
-    ax_vec4** states[] = {&s->x, &s->velocity, &s->load};
-    for (int k = 0; k < 3; ++k) {
+    ax_vec4** states[] = {&s->x, &s->velocity};
+    for (int k = 0; k < 2; ++k) {
         ax_vec4 *from = *states[k], *to = ax_alloc_aligned((size_t)s->n, sizeof *to);
         for (int v = 0; v < s->n; ++v)
             memcpy(to[position[v]], from[s->position[v]], sizeof *to);
         ax_free(from);
         *states[k] = to;
     }
+    for (int v = 0; v < s->n; ++v)
+        s->held[position[v]] = held[v];
     memcpy(s->order, order, (size_t)s->n * sizeof *order);
     ax_free(s->position);
     s->position = position;
+    s->dead_changed = s->dead_changed || s->dead;
 }
 
-// Sorts the constraints of a group along the elimination order, and carries parameters and multipliers with them.
-static void sort_group(ax_solver* s, group* g)
+// Sorts elements along the elimination order. Returns the old slot of what each new slot holds, spare ones repeating the last.
+static int* sort_elements(const ax_solver* s, elements* e)
 {
-    int n = g->points_each;
-    size_t lanes = (size_t)g->type->lanes, rows = (size_t)g->rows, blocks = (size_t)g->blocks;
-    int *first = AX_NEW(int, g->count), *start = AX_NEW(int, s->n + 1), *sorted = AX_NEW(int, g->count);
-    for (int c = 0; c < g->count; ++c) {
+    int n = e->points_each, *first = AX_NEW(int, e->count), *start = AX_NEW(int, s->n + 1),
+        *sorted = AX_NEW(int, e->count);
+    for (int c = 0; c < e->count; ++c) {
         first[c] = s->n;
         for (int k = 0; k < n; ++k) {
-            int at = s->position[g->points[c * n + k]];
+            int at = s->position[e->points[c * n + k]];
             first[c] = at < first[c] ? at : first[c];
         }
     }
-    ax_bucket_sort(g->count, s->n, first, NULL, start, sorted);
-    ax_lane* parameter = ax_alloc_aligned(blocks * (lanes ? lanes : 1), sizeof *parameter);
-    ax_lane3* dual = ax_alloc_aligned(blocks * rows, sizeof *dual);
-    for (int slot = 0; slot < g->blocks * AX_W; ++slot) {
-        int c = sorted[slot < g->count ? slot : g->count - 1], old = g->slot[c];
-        size_t b = (size_t)slot / AX_W, from = (size_t)old / AX_W;
-        int l = slot % AX_W, was = old % AX_W;
-        for (size_t k = 0; k < lanes; ++k)
-            parameter[b * lanes + k][l] = g->parameter[from * lanes + k][was];
-        for (size_t r = 0; r < rows; ++r)
-            for (int d = 0; d < 3; ++d)
-                dual[b * rows + r][d][l] = g->dual[from * rows + r][d][was];
+    ax_bucket_sort(e->count, s->n, first, NULL, start, sorted);
+    int* was = AX_NEW(int, e->blocks* AX_W);
+    for (int slot = 0; slot < e->blocks * AX_W; ++slot) {
+        int c = sorted[slot < e->count ? slot : e->count - 1];
+        was[slot] = e->slot[c];
         for (int k = 0; k < n; ++k)
-            g->index[(b * (size_t)n + (size_t)k) * AX_W + (size_t)l] = s->position[g->points[c * n + k]];
+            e->index[((size_t)(slot / AX_W) * (size_t)n + (size_t)k) * AX_W + (size_t)(slot % AX_W)] =
+                s->position[e->points[c * n + k]];
     }
-    for (int slot = 0; slot < g->count; ++slot)
-        g->slot[sorted[slot]] = slot;
-    ax_free(g->parameter);
-    ax_free(g->dual);
-    g->parameter = parameter;
-    g->dual = dual;
+    for (int slot = 0; slot < e->count; ++slot)
+        e->slot[sorted[slot]] = slot;
     ax_free(first);
     ax_free(start);
     ax_free(sorted);
+    return was;
 }
 
-// Which contributions each point sums, in a fixed order: by group, slot and row.
-static void list_incidence(ax_solver* s)
+// `each` lanes per block, moved as their elements have been. Frees `lanes`.
+static ax_lane* carry(const elements* e, const int* was, ax_lane* lanes, size_t each)
 {
-    s->row_count = 0;
+    ax_lane* to = ax_alloc_aligned((size_t)e->blocks * (each ? each : 1), sizeof *to);
+    for (int slot = 0; slot < e->blocks * AX_W; ++slot) {
+        size_t b = (size_t)slot / AX_W, from = (size_t)was[slot] / AX_W;
+        for (size_t k = 0; k < each; ++k)
+            to[b * each + k][slot % AX_W] = lanes[from * each + k][was[slot] % AX_W];
+    }
+    ax_free(lanes);
+    return to;
+}
+
+static void sort_all(ax_solver* s)
+{
     for (int k = 0; k < s->group_count; ++k) {
         group* g = s->groups + k;
-        g->first_row = s->row_count;
-        s->row_count += g->blocks * AX_W * g->contributions;
+        int* was = sort_elements(s, &g->e);
+        g->parameter = carry(&g->e, was, g->parameter, (size_t)g->type->lanes);
+        g->dual = (ax_lane3*)carry(&g->e, was, (ax_lane*)g->dual, 3 * (size_t)g->rows);
+        ax_free(was);
     }
+    for (int k = 0; k < s->load_count; ++k)
+        for (int c = 0; c < s->loads[k].class_count; ++c) {
+            load_class* class = s->loads[k].classes + c;
+            int* was = sort_elements(s, &class->e);
+            class->area = carry(&class->e, was, class->area, 1);
+            ax_free(was);
+        }
+}
+
+// All elements that write rows, constraints first: NULL after the last.
+static elements* writer(ax_solver* s, int k, bool* edges)
+{
+    *edges = false;
+    for (int g = 0; g < s->group_count; ++g)
+        if (!s->groups[g].type->eliminated && k-- == 0) {
+            *edges = s->groups[g].type->pattern == AX_ROWS_EDGES;
+            return &s->groups[g].e;
+        }
+    for (int f = 0; f < s->load_count; ++f)
+        for (int c = 0; s->loads[f].type->follows && c < s->loads[f].class_count; ++c)
+            if (k-- == 0)
+                return &s->loads[f].classes[c].e;
+    return NULL;
+}
+
+// Which rows each point sums, in a fixed order: by writer, slot and row.
+static void list_incidence(ax_solver* s)
+{
+    elements* e;
+    bool edges;
+    int tasks = 0, constraints = 0;
+    for (int k = 0; k < s->group_count; ++k)
+        constraints += !s->groups[k].type->eliminated;
+    s->row_count = 0;
+    for (int k = 0; (e = writer(s, k, &edges)); ++k) {
+        e->first_row = s->row_count, e->first_task = tasks;
+        s->row_count += e->blocks * AX_W * e->rows_each;
+        tasks += task_count(e);
+        if (k + 1 == constraints)
+            s->first_load_row = s->row_count;
+    }
+    s->point_tallies = tasks;
     ax_free(s->row);
+    ax_free(s->tallies);
     ax_free(s->incident_start);
     ax_free(s->incident);
     s->row = ax_alloc_aligned((size_t)s->row_count, sizeof *s->row);
+    s->tallies = AX_NEW0(tally, tasks + point_task_count(s));
     s->incident_start = AX_NEW0(int, s->n + 2);
     for (int pass = 0; pass < 2; ++pass) {
-        for (int k = 0; k < s->group_count; ++k) {
-            const group* g = s->groups + k;
-            bool edges = g->type->pattern == AX_ROWS_EDGES;
-            for (int slot = 0; slot < g->count; ++slot)
-                for (int p = 0; p < g->points_each; ++p) {
-                    int at = g->index[(slot / AX_W * g->points_each + p) * AX_W + slot % AX_W];
-                    int row = g->first_row + slot * g->contributions + (edges ? p / 2 : p);
+        for (int k = 0; (e = writer(s, k, &edges)); ++k)
+            for (int slot = 0; slot < e->count; ++slot)
+                for (int p = 0; p < e->points_each; ++p) {
+                    int at = e->index[(slot / AX_W * e->points_each + p) * AX_W + slot % AX_W];
+                    int row = e->first_row + slot * e->rows_each + (edges ? p / 2 : p);
                     if (pass)
                         s->incident[s->incident_start[at + 1]++] = row << 1 | (edges && p % 2 == 0);
                     else
                         ++s->incident_start[at + 2];
                 }
-        }
         if (pass)
             break;
         for (int v = 0; v <= s->n; ++v)
@@ -486,12 +537,10 @@ static void list_incidence(ax_solver* s)
     }
 }
 
-bool ax_solver_prepare(ax_solver* s)
+static bool factorise(ax_solver* s)
 {
-    if (!s->values_changed)
-        return true;
-    double start = ax_seconds();
-    ax_sparse matrix = assemble(s);
+    unsigned char* held = find_held(s);
+    ax_sparse matrix = assemble(s, held);
     if (s->pattern_changed) {
         int* order = AX_NEW(int, s->n);
         ax_order_by_place(&matrix, (const double(*)[3])s->start, s->pool, order);
@@ -499,82 +548,39 @@ bool ax_solver_prepare(ax_solver* s)
         s->panels = ax_panels_analyse(&matrix, order);
         s->counters.factor_entries = ax_panels_entries(s->panels);
         s->counters.bytes_per_solve = ax_panels_bytes(s->panels);
-        reorder(s, ax_panels_order(s->panels));
-        for (int k = 0; k < s->group_count; ++k)
-            sort_group(s, s->groups + k);
-        list_incidence(s);
-        ++s->counters.analyses;
+        reorder(s, ax_panels_order(s->panels), held);
+        s->rows_changed = true;
         s->pattern_changed = false;
+        ++s->counters.analyses;
         ax_free(order);
     }
     bool sound = ax_panels_factor(s->panels, &matrix, s->pool);
     ++s->counters.factorisations;
     s->values_changed = !sound;
     ax_sparse_free(&matrix);
-    s->counters.seconds_prepare += ax_seconds() - start;
+    ax_free(held);
     return sound;
 }
 
-// Local step of one chunk of blocks of the active group.
-static void project_chunk(void* context, int chunk)
+bool ax_solver_prepare(ax_solver* s)
 {
-    ax_solver* s = context;
-    group* g = s->groups + s->active_group;
-    int end = (chunk + 1) * CHUNK < g->blocks ? (chunk + 1) * CHUNK : g->blocks;
-    ax_lane3 x[AX_MOST_POINTS], y[AX_MOST_POINTS], p[AX_MOST_POINTS], out[AX_MOST_POINTS];
-    for (int b = chunk * CHUNK; b < end; ++b) {
-        gather(s, g, b, x);
-        form_rows(g, (const ax_lane3*)x, y);
-        ax_lane3* dual = g->dual + (size_t)b * (size_t)g->rows;
-        bool hard = s->multipliers && !g->soft;
-        if (hard)
-            for (int r = 0; r < g->rows; ++r)
-                for (int c = 0; c < 3; ++c)
-                    for (int l = 0; l < AX_W; ++l)
-                        y[r][c][l] += dual[r][c][l];
-        g->type->project((const ax_lane*)(g->parameter + (size_t)b * (size_t)g->type->lanes), g->place, g->points_each,
-                         (const ax_lane3*)y, p);
-        if (hard)
-            for (int r = 0; r < g->rows; ++r)
-                for (int c = 0; c < 3; ++c)
-                    for (int l = 0; l < AX_W; ++l) {
-                        dual[r][c][l] = y[r][c][l] - p[r][c][l];
-                        p[r][c][l] -= dual[r][c][l];
-                    }
-        form_contributions(g, (const ax_lane3*)p, out);
-        ax_vec4* row = s->row + g->first_row + (size_t)b * AX_W * (size_t)g->contributions;
-        for (int l = 0; l < AX_W; ++l)
-            for (int r = 0; r < g->contributions; ++r) {
-                double* to = row[l * g->contributions + r];
-                to[0] = out[r][0][l], to[1] = out[r][1][l], to[2] = out[r][2][l], to[3] = 0;
-            }
+    if (!s->values_changed && !s->rows_changed)
+        return true;
+    double start = ax_seconds();
+    bool sound = !s->values_changed || factorise(s);
+    if (s->rows_changed) {
+        sort_all(s);
+        list_incidence(s);
+        s->rows_changed = false;
     }
-}
-
-// Right-hand side of one range of points: base plus contributions in their fixed order.
-static void sum_points(void* context, int task)
-{
-    ax_solver* s = context;
-    typedef double v4 __attribute__((vector_size(32)));
-    int end = (task + 1) * POINTS_PER_TASK < s->n ? (task + 1) * POINTS_PER_TASK : s->n;
-    for (int v = task * POINTS_PER_TASK; v < end; ++v) {
-        v4 sum = *(const v4*)s->base[v];
-        for (int k = s->incident_start[v]; k < s->incident_start[v + 1]; ++k) {
-            v4 row = *(const v4*)s->row[s->incident[k] >> 1];
-            sum += s->incident[k] & 1 ? -row : row;
-        }
-        *(v4*)s->x[v] = sum;
-    }
+    s->counters.seconds_prepare += ax_seconds() - start;
+    return sound;
 }
 
 static void iterate(ax_solver* s)
 {
     double start = ax_seconds();
-    for (int k = 0; k < s->group_count; ++k) {
-        s->active_group = k;
-        ax_pool_run(s->pool, project_chunk, s, (s->groups[k].blocks + CHUNK - 1) / CHUNK);
-    }
-    ax_pool_run(s->pool, sum_points, s, (s->n + POINTS_PER_TASK - 1) / POINTS_PER_TASK);
+    ax_local_step(s);
     double middle = ax_seconds();
     ax_panels_solve(s->panels, s->pool, s->x);
     s->counters.seconds_local += middle - start;
@@ -582,12 +588,30 @@ static void iterate(ax_solver* s)
     ++s->counters.iterations;
 }
 
+// Adds to the base what is constant during iterations: dead loads, and held points where they pull on free ones.
+static void add_to_base(ax_solver* s)
+{
+    ax_sum_dead_loads(s);
+    for (int v = 0; s->dead && v < s->n; ++v)
+        for (int c = 0; c < 4; ++c)
+            s->base[v][c] += s->load_factor * s->dead[v][c];
+    const ax_sparse* m = &s->held_matrix;
+    for (int v = 0; v < s->n; ++v)
+        for (int k = m->start[v]; k < m->start[v + 1]; ++k) {
+            int i = s->position[v], j = s->position[m->row[k]], free = s->held[i] ? j : i, held = s->held[i] ? i : j;
+            for (int c = 0; c < 3; ++c)
+                s->base[free][c] -= m->value[k] * s->x[held][c];
+        }
+}
+
 bool ax_solver_iterate(ax_solver* s, int iterations)
 {
     if (!ax_solver_prepare(s))
         return false;
     assert(!s->dynamic);
-    memcpy(s->base, s->load, (size_t)s->n * sizeof *s->base);
+    ax_pin(s);
+    memset(s->base, 0, (size_t)s->n * sizeof *s->base);
+    add_to_base(s);
     for (int k = 0; k < iterations; ++k)
         iterate(s);
     return true;
@@ -602,68 +626,45 @@ bool ax_solver_step(ax_solver* s, int iterations)
     for (int v = 0; v < s->n; ++v)
         for (int c = 0; c < 4; ++c) {
             double a = c < 3 ? s->dynamics.acceleration[c] : 0;
-            s->momentum[v][c] = s->x[v][c]; // the place before the step, needed for the velocity
+            s->kept[v][c] = s->x[v][c]; // the place before the step, needed for the velocity
             s->x[v][c] = s->x[v][c] + h * s->velocity[v][c] + h * h * a;
-            s->base[v][c] = m * s->x[v][c] + s->load[v][c];
+            s->base[v][c] = m * s->x[v][c];
         }
+    ax_pin(s);
+    add_to_base(s);
     for (int k = 0; k < iterations; ++k)
         iterate(s);
     for (int v = 0; v < s->n; ++v)
         for (int c = 0; c < 4; ++c)
-            s->velocity[v][c] = s->dynamics.damping * (s->x[v][c] - s->momentum[v][c]) / h;
+            s->velocity[v][c] = s->dynamics.damping * (s->x[v][c] - s->kept[v][c]) / h;
     return true;
 }
 
-// Sum of |A x - p|^2 over the rows of a group, spare lanes left out.
-static double group_error(ax_solver* s, const group* g)
+static size_t element_bytes(const elements* e)
 {
-    double sum = 0;
-    ax_lane3 x[AX_MOST_POINTS], y[AX_MOST_POINTS], p[AX_MOST_POINTS];
-    for (int b = 0; b < g->blocks; ++b) {
-        gather(s, g, b, x);
-        form_rows(g, (const ax_lane3*)x, y);
-        g->type->project((const ax_lane*)(g->parameter + (size_t)b * (size_t)g->type->lanes), g->place, g->points_each,
-                         (const ax_lane3*)y, p);
-        for (int l = 0; l < AX_W && b * AX_W + l < g->count; ++l)
-            for (int r = 0; r < g->rows; ++r)
-                for (int c = 0; c < 3; ++c)
-                    sum += (y[r][c][l] - p[r][c][l]) * (y[r][c][l] - p[r][c][l]);
-    }
-    return sum;
-}
-
-double ax_solver_energy(ax_solver* s)
-{
-    ax_solver_prepare(s);
-    double energy = 0;
-    for (int k = 0; k < s->group_count; ++k)
-        energy += s->groups[k].weight * group_error(s, s->groups + k);
-    for (int v = 0; v < s->n; ++v)
-        energy -= 2 * ax_dot3(s->load[v], s->x[v]);
-    return energy;
-}
-
-double ax_solver_residual(ax_solver* s, int k)
-{
-    ax_solver_prepare(s);
-    const group* g = s->groups + k;
-    return sqrt(group_error(s, g) / ((double)g->count * g->rows));
+    return (size_t)e->blocks * AX_W * (size_t)e->points_each * sizeof(int) +
+           (size_t)e->count * ((size_t)e->points_each + 1) * sizeof(int);
 }
 
 ax_solver_counters ax_solver_count(const ax_solver* s)
 {
     ax_solver_counters counters = s->counters;
-    counters.bytes = (size_t)s->n * (5 * sizeof(ax_vec4) + 3 * sizeof(double) + 3 * sizeof(int)) +
+    counters.bytes = (size_t)s->n * (4 * sizeof(ax_vec4) + 4 * sizeof(double) + 3 * sizeof(int) + 1) +
                      (size_t)s->row_count * sizeof *s->row;
+    counters.bytes += s->dead ? (size_t)s->n * sizeof *s->dead : 0;
+    counters.bytes += s->point_force ? (size_t)s->n * sizeof *s->point_force : 0;
     if (s->panels)
         counters.bytes += ax_panels_bytes(s->panels) / 2 + (size_t)s->n * sizeof(ax_vec4);
     if (s->incident_start)
         counters.bytes += (size_t)s->incident_start[s->n] * sizeof *s->incident;
     for (int k = 0; k < s->group_count; ++k) {
         const group* g = s->groups + k;
-        size_t each = (size_t)g->points_each * sizeof(int) * AX_W + (size_t)g->type->lanes * sizeof(ax_lane) +
-                      (size_t)g->rows * sizeof(ax_lane3);
-        counters.bytes += (size_t)g->blocks * each + (size_t)g->count * ((size_t)g->points_each + 1) * sizeof(int);
+        counters.bytes +=
+            (size_t)g->e.blocks * ((size_t)g->type->lanes * sizeof(ax_lane) + (size_t)g->rows * sizeof(ax_lane3));
+        counters.bytes += element_bytes(&g->e);
     }
+    for (int k = 0; k < s->load_count; ++k)
+        for (int c = 0; c < s->loads[k].class_count; ++c)
+            counters.bytes += element_bytes(&s->loads[k].classes[c].e);
     return counters;
 }

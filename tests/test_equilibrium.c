@@ -1,0 +1,346 @@
+// The projective solver under loads: equilibria with known answers, and what it says when there is none.
+#include "deploy/model.h"
+#include "linkage/lattice.h"
+#include "solver/solver.h"
+
+#include "base/random.h"
+#include "support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const ax_constraint_type* type(const char* name)
+{
+    const ax_constraint_type* found = ax_constraint_find(name);
+    assert_non_null(found);
+    return found;
+}
+
+static int lane(const char* of, const char* parameter)
+{
+    return ax_parameter_find(type(of), parameter)->offset;
+}
+
+static int value(const char* of, const char* parameter)
+{
+    const ax_load_type* load = ax_load_find(of);
+    for (int k = 0; k < load->parameter_count; ++k)
+        if (strcmp(load->parameters[k].name, parameter) == 0)
+            return load->parameters[k].offset;
+    fail_msg("%s has no %s", of, parameter);
+    return -1;
+}
+
+// A kagome patch over the unit disk, fully open, panels of edge spacing / 2.
+static ax_lattice make_patch(double spacing)
+{
+    enum { CORNERS = 60 };
+    double circle[CORNERS][2];
+    for (int k = 0; k < CORNERS; ++k)
+        circle[k][0] = cos(2 * AX_PI * k / CORNERS), circle[k][1] = sin(2 * AX_PI * k / CORNERS);
+    ax_lattice lattice;
+    assert_int_equal(ax_lattice_lay(&(ax_outline){CORNERS, (const double(*)[2])circle}, spacing, 0.1,
+                                    (const double[2]){0.02, 0.01}, false, &lattice, NULL),
+                     AX_OK);
+    return lattice;
+}
+
+// Panels, holes and openings of a linkage in CSR.
+typedef struct loops {
+    int panels, count;
+    int *start, *points;
+} loops;
+
+static loops collect(const ax_linkage* linkage)
+{
+    loops all = {.panels = linkage->triangle_count};
+    int holes = linkage->hole_count, openings = linkage->opening_count;
+    all.start = AX_NEW0(int, all.panels + holes + openings + 1);
+    all.points = AX_NEW(int, 3 * all.panels + linkage->hole_start[holes] + linkage->opening_start[openings]);
+    memcpy(all.points, linkage->triangles, 3 * (size_t)all.panels * sizeof *all.points);
+    for (; all.count < all.panels; ++all.count)
+        all.start[all.count + 1] = 3 * (all.count + 1);
+    const int *starts[2] = {linkage->hole_start, linkage->opening_start},
+              *hinges[2] = {linkage->hole_hinges, linkage->opening_hinges}, counts[2] = {holes, openings};
+    for (int kind = 0; kind < 2; ++kind)
+        for (int k = 0; k < counts[kind]; ++k) {
+            int size = starts[kind][k + 1] - starts[kind][k], at = all.start[all.count++];
+            memcpy(all.points + at, hinges[kind] + starts[kind][k], (size_t)size * sizeof *all.points);
+            all.start[all.count] = at + size;
+        }
+    return all;
+}
+
+static void free_loops(loops* all)
+{
+    ax_free(all->start);
+    ax_free(all->points);
+}
+
+static int* list_rim(const ax_linkage* linkage, int* count)
+{
+    int* rim = AX_NEW(int, linkage->hinge_count);
+    *count = 0;
+    for (int h = 0; h < linkage->hinge_count; ++h)
+        if (linkage->on_rim[h])
+            rim[(*count)++] = h;
+    return rim;
+}
+
+// Both loads against the model of the exact stage, an implementation of its own, at places far from any equilibrium.
+static void loads_are_those_of_the_exact_stage(void** state)
+{
+    (void)state;
+    ax_lattice lattice = make_patch(0.3);
+    const ax_linkage* linkage = &lattice.linkage;
+    int n = linkage->hinge_count;
+    loops all = collect(linkage);
+    double(*x)[3] = ax_alloc((size_t)n, sizeof *x), (*gradient)[3] = ax_alloc((size_t)n, sizeof *x);
+    double(*force)[3] = ax_alloc((size_t)n, sizeof *x);
+    ax_random random = {5};
+    for (int h = 0; h < n; ++h)
+        for (int c = 0; c < 3; ++c)
+            x[h][c] = (c < 2 ? lattice.hinges[h][c] : 0) + ax_random_uniform(&random, -0.2, 0.2);
+    const double down[3] = {0.6, 0, -0.8};
+    for (int inflated = 0; inflated < 2; ++inflated) {
+        double unit;
+        ax_deploy_model model = ax_deploy_model_make(linkage, (const double(*)[2])lattice.hinges, (const double(*)[3])x,
+                                                     linkage->on_rim, inflated ? NULL : down, &unit);
+        double energy = ax_deploy_energy(&model, (const double(*)[3])x, gradient);
+        ax_solver* s = ax_solver_make(n, (const double(*)[3])x, NULL);
+        int* points = AX_NEW(int, n);
+        for (int h = 0; h < n; ++h)
+            points[h] = h;
+        ax_solver_add(s, type("closeness"), 1, n, points, 1, NULL); // at rest: no force
+        int load;
+        if (inflated) {
+            load = ax_solver_add_load(s, ax_load_find("pressure"), all.count, all.start, all.points);
+            ax_solver_set_load_value(s, load, value("pressure", "pressure"), model.pressure);
+            for (int c = 0; c < 3; ++c)
+                ax_solver_set_load_value(s, load, value("pressure", "origin") + c, 0);
+        } else {
+            load = ax_solver_add_load(s, ax_load_find("gravity"), all.panels, all.start, all.points);
+            double area = 0, (*rest)[3] = ax_calloc((size_t)n, sizeof *rest);
+            for (int h = 0; h < n; ++h)
+                memcpy(rest[h], lattice.hinges[h], sizeof *lattice.hinges);
+            for (int t = 0; t < all.panels; ++t) {
+                const int* c = linkage->triangles[t];
+                area += ax_orient2(lattice.hinges[c[0]], lattice.hinges[c[1]], lattice.hinges[c[2]]) / 2;
+            }
+            ax_solver_measure_load(s, load, (const double(*)[3])rest);
+            ax_solver_set_load_value(s, load, value("gravity", "density"), 1 / (2 * area));
+            ax_solver_set_load_value(s, load, value("gravity", "acceleration"), 2);
+            for (int c = 0; c < 3; ++c)
+                ax_solver_set_load_value(s, load, value("gravity", "direction") + c, 7 * down[c]);
+            ax_free(rest);
+        }
+        ax_solver_get_forces(s, force);
+        for (int h = 0; h < n; ++h)
+            for (int c = 0; c < 3; ++c)
+                assert_near(force[h][c], -gradient[h][c], 1e-14);
+        assert_near(ax_solver_energy(s), 2 * energy, 1e-13);
+        ax_solver_free(s);
+        ax_free(points);
+        ax_deploy_model_free(&model);
+    }
+    free_loops(&all);
+    ax_free(x);
+    ax_free(gradient);
+    ax_free(force);
+    ax_lattice_free(&lattice);
+}
+
+// A chain of equal links between two held points under equal weights. Statics alone: the horizontal force H is the same everywhere,
+// the vertical one falls by a weight at every hinge, so link k points along (H, (links - 1) / 2 - k); H makes the span right.
+static void a_hanging_chain_is_the_discrete_catenary(void** state)
+{
+    (void)state;
+    enum { LINKS = 16 };
+    const double span = 12;
+    double lo = 0, hi = 1e3;
+    for (int step = 0; step < 200; ++step) {
+        double h = (lo + hi) / 2, sum = 0;
+        for (int k = 0; k < LINKS; ++k)
+            sum += h / sqrt(h * h + (k - (LINKS - 1) / 2.0) * (k - (LINKS - 1) / 2.0));
+        *(sum < span ? &lo : &hi) = h;
+    }
+    double place[LINKS + 1][3], force[LINKS + 1][3] = {{0}}, x[LINKS + 1][3];
+    int link[LINKS][2], held[2] = {0, LINKS};
+    for (int k = 0; k <= LINKS; ++k) {
+        place[k][0] = span * k / LINKS, place[k][1] = place[k][2] = 0;
+        force[k][2] = -0.01;
+        if (k < LINKS)
+            link[k][0] = k, link[k][1] = k + 1;
+    }
+    ax_solver* s = ax_solver_make(LINKS + 1, (const double(*)[3])place, NULL);
+    int edges = ax_solver_add(s, type("edge_length"), 2, LINKS, link[0], 1, NULL);
+    ax_solver_add(s, type("fixed"), 1, 2, held, 0, NULL);
+    for (int k = 0; k < LINKS; ++k)
+        ax_solver_set(s, edges, k, lane("edge_length", "length"), 1);
+    ax_solver_set_load(s, (const double(*)[3])force);
+    ax_solver_use_multipliers(s, true);
+    ax_settle settle = AX_SETTLE_STANDARD;
+    settle.force = settle.primal = 1e-11, settle.iterations = 100000;
+    ax_settled result = ax_solver_settle(s, &settle, NULL);
+    assert_int_equal(result.end, AX_SETTLE_DONE);
+    ax_solver_get_places(s, x);
+    assert_int_equal(ax_solver_multiplier_count(s), 3 * (LINKS + 2));
+    double at[2] = {0, 0}, u[LINKS + 2][3]; // the supports have rows too, without forces
+    ax_solver_get_multipliers(s, u[0]);
+    for (int k = 0; k < LINKS; ++k) {
+        double v = k - (LINKS - 1) / 2.0, size = sqrt(lo * lo + v * v);
+        assert_near(x[k][0], at[0], 1e-8);
+        assert_near(x[k][2], at[1], 1e-8);
+        at[0] += lo / size, at[1] += v / size;
+        assert_near(ax_norm3(u[k]), 0.01 * size, 1e-9); // w u is the force in the link
+    }
+    ax_solver_free(s);
+}
+
+// Edges as springs of stiffness w, rest length 1, pressure p: from the volume 5 (3 + sqrt 5) / 12 l^3 of the icosahedron,
+// d/dl (30 w (l - 1)^2 / 2 - p V) = 0 gives 30 w (l - 1) = p 5 (3 + sqrt 5) / 4 l^2.
+static void a_balloon_of_springs_grows_as_its_volume_says(void** state)
+{
+    (void)state;
+    const double g = (1 + sqrt(5)) / 2, w = 3, p = 1;
+    double place[12][3];
+    for (int k = 0; k < 12; ++k) { // cyclic permutations of (0, +-1, +-g) / 2: edges of 1
+        int axis = k / 4;
+        place[k][axis] = 0.3; // off centre: the answer must not depend on where it is
+        place[k][(axis + 1) % 3] = (k % 2 ? 0.5 : -0.5) + 0.3;
+        place[k][(axis + 2) % 3] = (k / 2 % 2 ? g / 2 : -g / 2) + 0.3;
+    }
+    int edge[30][2], face[20][3], start[21], edges = 0, faces = 0;
+    for (int i = 0; i < 12; ++i)
+        for (int j = i + 1; j < 12; ++j) {
+            if (ax_distance3(place[i], place[j]) > 1.01)
+                continue;
+            edge[edges][0] = i, edge[edges++][1] = j;
+            for (int k = j + 1; k < 12; ++k)
+                if (ax_distance3(place[i], place[k]) < 1.01 && ax_distance3(place[j], place[k]) < 1.01) {
+                    double a[3], b[3], normal[3], out[3];
+                    ax_sub3(place[j], place[i], a), ax_sub3(place[k], place[i], b);
+                    ax_cross(a, b, normal);
+                    ax_sub3(place[i], (const double[3]){0.3, 0.3, 0.3}, out);
+                    bool outward = ax_dot3(normal, out) > 0;
+                    face[faces][0] = i, face[faces][1] = outward ? j : k, face[faces++][2] = outward ? k : j;
+                }
+        }
+    assert_int_equal(edges, 30);
+    assert_int_equal(faces, 20);
+    for (int k = 0; k <= 20; ++k)
+        start[k] = 3 * k;
+    ax_solver* s = ax_solver_make(12, (const double(*)[3])place, NULL);
+    ax_solver_add(s, type("edge_length"), 2, 30, edge[0], w, NULL);
+    ax_solver_add(s, type("fixed"), 1, 1, (int[]){0}, 0, NULL);
+    int load = ax_solver_add_load(s, ax_load_find("pressure"), 20, start, face[0]);
+    ax_solver_set_load_value(s, load, value("pressure", "pressure"), p);
+    ax_settle settle = AX_SETTLE_STANDARD;
+    settle.force = 1e-12;
+    assert_int_equal(ax_solver_settle(s, &settle, NULL).end, AX_SETTLE_DONE);
+    double a = p * 5 * (3 + sqrt(5)) / 4 / (30 * w), l = (1 - sqrt(1 - 4 * a)) / (2 * a), x[12][3];
+    ax_solver_get_places(s, x);
+    for (int e = 0; e < 30; ++e)
+        assert_near(ax_distance3(x[edge[e][0]], x[edge[e][1]]), l, 1e-10);
+    assert_near(x[0][0], place[0][0], 0); // held exactly
+    ax_solver_free(s);
+}
+
+// A patch of rigid panels, rim held in a circle 3 % smaller than it would fill.
+typedef struct sheet {
+    ax_lattice lattice;
+    loops all;
+    int rim_count, *rim, panels, load;
+    double (*place)[3];
+    ax_solver* solver;
+} sheet;
+
+static sheet make_sheet(double spacing, bool inflated, ax_pool* pool)
+{
+    sheet k = {.lattice = make_patch(spacing)};
+    const ax_linkage* linkage = &k.lattice.linkage;
+    int n = linkage->hinge_count;
+    k.all = collect(linkage);
+    k.rim = list_rim(linkage, &k.rim_count);
+    k.place = ax_calloc((size_t)n, sizeof *k.place);
+    for (int h = 0; h < n; ++h)
+        memcpy(k.place[h], k.lattice.hinges[h], sizeof *k.lattice.hinges);
+    k.solver = ax_solver_make(n, (const double(*)[3])k.place, pool);
+    k.panels = ax_solver_add(k.solver, type("rigid_triangle"), 3, k.all.panels, linkage->triangles[0], 1, NULL);
+    int supports = ax_solver_add(k.solver, type("fixed"), 1, k.rim_count, k.rim, 0, NULL);
+    k.load = ax_solver_add_load(k.solver, ax_load_find(inflated ? "pressure" : "gravity"),
+                                inflated ? k.all.count : k.all.panels, k.all.start, k.all.points);
+    for (int r = 0; r < k.rim_count; ++r)
+        for (int c = 0; c < 2; ++c)
+            ax_solver_set(k.solver, supports, r, lane("fixed", "target") + c, 0.97 * k.place[k.rim[r]][c]);
+    ax_random random = {11};
+    for (int h = 0; h < n; ++h)
+        k.place[h][2] = ax_random_uniform(&random, 0, 0.01);
+    ax_solver_set_places(k.solver, (const double(*)[3])k.place);
+    return k;
+}
+
+static void free_sheet(sheet* k)
+{
+    ax_lattice_free(&k->lattice);
+    free_loops(&k->all);
+    ax_free(k->rim);
+    ax_free(k->place);
+    ax_solver_free(k->solver);
+}
+
+// Whatever the shape, the inside and its supports balance: supports carry the weight; under pressure p times the vector area of the
+// surface, less what the membrane that closes it to the origin brings to the rim, two thirds of the same with the other sign.
+static void supports_carry_the_whole_load(void** state)
+{
+    (void)state;
+    for (int inflated = 0; inflated < 2; ++inflated) {
+        sheet k = make_sheet(0.3, inflated, NULL);
+        ax_solver* s = k.solver;
+        int n = k.lattice.linkage.hinge_count;
+        ax_solver_use_multipliers(s, true);
+        double factor = 0.1 / ax_solver_load_ratio(s, k.panels);
+        ax_solver_scale_loads(s, factor);
+        assert_near(ax_solver_load_ratio(s, k.panels), 0.1, 1e-12);
+        ax_settle settle = AX_SETTLE_STANDARD;
+        settle.iterations = 30000, settle.patience = 5000;
+        ax_settled result = ax_solver_settle(s, &settle, NULL);
+        assert_int_equal(result.end, AX_SETTLE_DONE);
+        double(*force)[3] = ax_alloc((size_t)n, sizeof *force), reaction[3] = {0}, load[3] = {0}, size = 0;
+        ax_solver_get_forces(s, force);
+        ax_solver_get_places(s, k.place);
+        for (int r = 0; r < k.rim_count; ++r)
+            for (int c = 0; c < 3; ++c)
+                reaction[c] -= force[k.rim[r]][c];
+        // all loads together, from the shape alone: vector area of all loops, or the weight
+        for (int p = 0; p < (inflated ? k.all.count : k.all.panels); ++p) {
+            const int *loop = k.all.points + k.all.start[p], count = k.all.start[p + 1] - k.all.start[p];
+            for (int i = 0; i < count; ++i) {
+                double part[3];
+                ax_cross(k.place[loop[i]], k.place[loop[(i + 1) % count]], part);
+                for (int c = 0; c < 3; ++c)
+                    load[c] += part[c] / 2 / 3;
+            }
+        }
+        double edge = k.lattice.spacing / 2, area = k.all.panels * sqrt(3) / 4 * edge * edge;
+        if (!inflated)
+            load[0] = load[1] = 0, load[2] = 9.80665 * area;
+        size = ax_norm3(load);
+        assert_true(size > 0.1);
+        for (int c = 0; c < 3; ++c)
+            assert_near(reaction[c], -factor * load[c], 1e-5 * factor * size);
+        ax_free(force);
+        free_sheet(&k);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(loads_are_those_of_the_exact_stage),
+        cmocka_unit_test(a_hanging_chain_is_the_discrete_catenary),
+        cmocka_unit_test(a_balloon_of_springs_grows_as_its_volume_says),
+        cmocka_unit_test(supports_carry_the_whole_load),
+    };
+    return cmocka_run_group_tests_name("equilibrium", tests, NULL, NULL);
+}
