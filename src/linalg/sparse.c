@@ -3,6 +3,7 @@
 #include "base/bucket.h"
 
 #include <assert.h>
+#include <stdint.h>
 #include <string.h>
 
 void ax_sparse_free(ax_sparse* matrix)
@@ -62,14 +63,19 @@ ax_sparse ax_sparse_principal(const ax_sparse* matrix, const int* index)
     return part;
 }
 
+void ax_entries_reserve(ax_entries* entries, size_t count)
+{
+    assert(count < INT32_MAX);
+    entries->capacity = (int)count;
+    entries->row = ax_realloc(entries->row, count, sizeof *entries->row);
+    entries->column = ax_realloc(entries->column, count, sizeof *entries->column);
+    entries->value = ax_realloc(entries->value, count, sizeof *entries->value);
+}
+
 void ax_entries_add(ax_entries* entries, int row, int column, double value)
 {
-    if (entries->count == entries->capacity) {
-        entries->capacity = entries->capacity ? 2 * entries->capacity : 1024;
-        entries->row = ax_realloc(entries->row, (size_t)entries->capacity, sizeof *entries->row);
-        entries->column = ax_realloc(entries->column, (size_t)entries->capacity, sizeof *entries->column);
-        entries->value = ax_realloc(entries->value, (size_t)entries->capacity, sizeof *entries->value);
-    }
+    if (entries->count == entries->capacity)
+        ax_entries_reserve(entries, entries->capacity ? 2 * (size_t)entries->capacity : 1024);
     int k = entries->count++;
     entries->row[k] = row > column ? row : column;
     entries->column[k] = row > column ? column : row;

@@ -25,6 +25,7 @@ typedef struct ax_entries {
     double* value;
 } ax_entries;
 
+void ax_entries_reserve(ax_entries* entries, size_t count); // room for `count` of them
 void ax_entries_add(ax_entries* entries, int row, int column, double value);
 ax_sparse ax_entries_sparse(ax_entries* entries, int n); // consumes the entries
 

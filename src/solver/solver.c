@@ -351,8 +351,13 @@ static double mass_term(const ax_solver* s)
 static ax_sparse assemble(ax_solver* s, const unsigned char* held)
 {
     ax_entries entries = {0}, apart = {0};
-    for (int v = 0; v < s->n; ++v)
-        ax_entries_add(&entries, v, v, held[v] ? 1 : mass_term(s));
+    size_t most = (size_t)s->n;
+    for (int k = 0; k < s->group_count; ++k)
+        most +=
+            (size_t)s->groups[k].e.count * (size_t)(s->groups[k].e.points_each * (s->groups[k].e.points_each - 1) / 2);
+    ax_entries_reserve(&entries, most);
+    for (int v = 0; v < s->n; ++v) // most entries fall on the diagonal: summed here, they need no sorting
+        s->stiffness[v] = held[v] ? 1 : mass_term(s);
     for (int k = 0; k < s->group_count; ++k) {
         const group* g = s->groups + k;
         if (g->type->eliminated)
@@ -370,21 +375,21 @@ static ax_sparse assemble(ax_solver* s, const unsigned char* held)
                 for (int b = 0; b <= a; ++b)
                     if (product[a * n + b] != 0) {
                         int i = g->e.points[c * n + a], j = g->e.points[c * n + b];
+                        double value = g->weight * product[a * n + b];
                         if (held[i] && held[j])
                             continue;
-                        // a point that stands twice in a constraint meets itself: both halves fall on the diagonal
-                        double twice = a != b && i == j ? 2 : 1;
-                        ax_entries_add(held[i] || held[j] ? &apart : &entries, i, j,
-                                       twice * g->weight * product[a * n + b]);
+                        if (i != j)
+                            ax_entries_add(held[i] || held[j] ? &apart : &entries, i, j, value);
+                        else // a point that stands twice in a constraint meets itself: both halves fall on the diagonal
+                            s->stiffness[i] += a == b ? value : 2 * value;
                     }
         ax_free(product);
     }
     ax_sparse_free(&s->held_matrix);
     s->held_matrix = ax_entries_sparse(&apart, s->n);
-    ax_sparse matrix = ax_entries_sparse(&entries, s->n);
     for (int v = 0; v < s->n; ++v)
-        s->stiffness[v] = matrix.value[matrix.start[v]];
-    return matrix;
+        ax_entries_add(&entries, v, v, s->stiffness[v]);
+    return ax_entries_sparse(&entries, s->n);
 }
 
 static unsigned char* find_held(const ax_solver* s)
@@ -447,17 +452,34 @@ static int* sort_elements(const ax_solver* s, elements* e)
     return was;
 }
 
-// `each` lanes per block, moved as their elements have been. Frees `lanes`.
-static ax_lane* carry(const elements* e, const int* was, ax_lane* lanes, size_t each)
+// Lanes of elements on their way to new slots.
+typedef struct carrying {
+    const elements* e;
+    const int* was;
+    const ax_lane* from;
+    ax_lane* to;
+    size_t each;
+} carrying;
+
+static void carry_task(void* context, int task)
 {
-    ax_lane* to = ax_alloc_aligned((size_t)e->blocks * (each ? each : 1), sizeof *to);
-    for (int slot = 0; slot < e->blocks * AX_W; ++slot) {
-        size_t b = (size_t)slot / AX_W, from = (size_t)was[slot] / AX_W;
-        for (size_t k = 0; k < each; ++k)
-            to[b * each + k][slot % AX_W] = lanes[from * each + k][was[slot] % AX_W];
+    const carrying* o = context;
+    int end = (task + 1) * CHUNK < o->e->blocks ? (task + 1) * CHUNK * AX_W : o->e->blocks * AX_W;
+    for (int slot = task * CHUNK * AX_W; slot < end; ++slot) {
+        size_t to = (size_t)slot / AX_W * o->each, from = (size_t)o->was[slot] / AX_W * o->each;
+        for (size_t k = 0; k < o->each; ++k)
+            o->to[to + k][slot % AX_W] = o->from[from + k][o->was[slot] % AX_W];
     }
+}
+
+// `each` lanes per block, moved as their elements have been. Frees `lanes`.
+static ax_lane* carry(const ax_solver* s, const elements* e, const int* was, ax_lane* lanes, size_t each)
+{
+    carrying o = {e, was, (const ax_lane*)lanes, NULL, each};
+    o.to = ax_alloc_aligned((size_t)e->blocks * (each ? each : 1), sizeof *o.to);
+    ax_pool_run(s->pool, carry_task, &o, task_count(e));
     ax_free(lanes);
-    return to;
+    return o.to;
 }
 
 static void sort_all(ax_solver* s)
@@ -465,15 +487,15 @@ static void sort_all(ax_solver* s)
     for (int k = 0; k < s->group_count; ++k) {
         group* g = s->groups + k;
         int* was = sort_elements(s, &g->e);
-        g->parameter = carry(&g->e, was, g->parameter, (size_t)g->type->lanes);
-        g->dual = (ax_lane3*)carry(&g->e, was, (ax_lane*)g->dual, 3 * (size_t)g->rows);
+        g->parameter = carry(s, &g->e, was, g->parameter, (size_t)g->type->lanes);
+        g->dual = (ax_lane3*)carry(s, &g->e, was, (ax_lane*)g->dual, 3 * (size_t)g->rows);
         ax_free(was);
     }
     for (int k = 0; k < s->load_count; ++k)
         for (int c = 0; c < s->loads[k].class_count; ++c) {
             load_class* class = s->loads[k].classes + c;
             int* was = sort_elements(s, &class->e);
-            class->area = carry(&class->e, was, class->area, 1);
+            class->area = carry(s, &class->e, was, class->area, 1);
             ax_free(was);
         }
 }
