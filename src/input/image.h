@@ -11,7 +11,7 @@ typedef struct ax_image {
     uint16_t* grey; // rows from top to bottom; 0 black, 65535 white
 } ax_image;
 
-// At most 50 million pixels. AX_BAD_INPUT when the file is no PNG or damaged.
+// At most 25 million pixels. AX_BAD_INPUT when the file is no PNG or damaged.
 ax_status ax_image_read(const char* path, ax_image* out, ax_error* error);
 // The same from memory; `path` is for messages.
 ax_status ax_image_parse(const char* path, const void* bytes, size_t size, ax_image* out, ax_error* error);
