@@ -77,7 +77,7 @@ typedef struct ax_cut_clash {
     int panels[2];
     int hinge;      // where they meet, -1: they do not
     double angle;   // radians, mouth angle at the hinge; NaN for panels that do not meet
-    int frame;      // of the path, -1: in the plane between flat and open
+    int frame;      // 0 flat, 1 deployed, 2 simulated; -1: on the way from flat to open at a hinge
     double overlap; // mm
 } ax_cut_clash;
 

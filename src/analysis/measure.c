@@ -238,8 +238,8 @@ void ax_measure_hole_angles(const ax_linkage* linkage, const double (*places)[3]
 }
 
 // Force of the edges of one panel on its corner k: tension pulls the hinge into the panel.
-static void corner_force(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3], int t,
-                         int k, double out[3])
+void ax_measure_corner_force(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
+                             int t, int k, double out[3])
 {
     const int* corner = linkage->triangles[t];
     memset(out, 0, 3 * sizeof *out);
@@ -260,7 +260,7 @@ static double (*unbalanced(const ax_linkage* linkage, const double (*places)[3],
     for (int t = 0; t < linkage->triangle_count; ++t)
         for (int k = 0; k < 3; ++k) {
             double f[3];
-            corner_force(linkage, places, edge_forces, t, k, f);
+            ax_measure_corner_force(linkage, places, edge_forces, t, k, f);
             for (int c = 0; c < 3; ++c)
                 sum[linkage->triangles[t][k]][c] += f[c];
         }
@@ -297,7 +297,7 @@ void ax_measure_hinge_forces(const ax_linkage* linkage, const double (*places)[3
     for (int t = 0; t < linkage->triangle_count; ++t)
         for (int k = 0; k < 3; ++k) {
             double f[3];
-            corner_force(linkage, places, edge_forces, t, k, f);
+            ax_measure_corner_force(linkage, places, edge_forces, t, k, f);
             *hinge_max = fmax(*hinge_max, ax_norm3(f));
         }
     double(*sum)[3] = unbalanced(linkage, places, edge_forces, loads);

@@ -37,6 +37,10 @@ void ax_measure_hole_angles(const ax_linkage* linkage, const double (*places)[3]
 double ax_measure_force_residual(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
                                  const double (*loads)[3], const unsigned char* supports, const ax_slide* slides);
 
+// Force on the hinge at corner k of triangle t by the triangle's two edges there, N.
+void ax_measure_corner_force(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
+                             int t, int k, double out[3]);
+
 // Largest force that a panel passes on at one hinge, and the sum of the reactions' magnitudes, N.
 void ax_measure_hinge_forces(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
                              const double (*loads)[3], const unsigned char* supports, double* hinge_max,

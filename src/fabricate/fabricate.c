@@ -1,6 +1,8 @@
 // From a design to a cut plan: scale to millimetres, panels by the joint's rule, sheets, drawing, order.
 #include "ax/fabricate.h"
 
+#include "base/vec.h"
+#include "fabricate/openings.h"
 #include "fabricate/work.h"
 #include "linkage/lattice.h"
 
@@ -56,7 +58,7 @@ static void begin(ax_work* w)
     w->joint = (ax_joint_job){plan->joint_values, plan->thickness, plan->kerf, plan->material};
 }
 
-static ax_status shape_panels(ax_work* w, ax_error* error)
+static void name_panels(ax_work* w)
 {
     ax_cut_plan* plan = w->plan;
     plan->panel_count = w->linkage->triangle_count;
@@ -66,17 +68,40 @@ static ax_status shape_panels(ax_work* w, ax_error* error)
         ax_panel_name(w->linkage, t, p->name);
         p->row = w->linkage->panels[t][1];
         p->layer = plan->joint->two_layers ? w->linkage->panels[t][2] : 0;
-        ax_panel_outline o = ax_work_outline(w, t, 0);
-        if (o.slack[o.tight] < 0)
-            return ax_fail(
-                error, AX_CANNOT_REALISE,
-                "Panel %s is too small for the joint \"%s\": one of its edges is %.3g mm too short. Make the "
-                "joint smaller, or design with fewer and larger panels.",
-                p->name, plan->joint->name, -o.slack[o.tight]);
+    }
+}
+
+// The outline of a loose panel and its holes.
+static ax_status put_loose_panel(ax_work* w, int t, ax_error* error)
+{
+    ax_panel_outline o = ax_work_outline(w, t, 0);
+    if (o.slack[o.tight] < 0) {
+        const int* corner = w->linkage->triangles[t];
+        double edge = ax_distance2(w->flat[corner[o.tight]], w->flat[corner[(o.tight + 1) % 3]]);
+        return ax_fail(
+            error, AX_CANNOT_REALISE,
+            "Panel %s is too small for the joint \"%s\": one of its edges has %.3g mm and needs %.3g mm. Make "
+            "the joint smaller, or design with fewer and larger panels.",
+            w->plan->panels[t].name, w->plan->joint->name, edge, edge - o.slack[o.tight]);
+    }
+    ax_panel_put_outline(&w->builder, &o, &ax_stay);
+    for (int k = 0; k < 3 && o.hole_radius > 0; ++k)
+        ax_panel_put_hole(&w->builder, &o, k, &ax_stay);
+    return AX_OK;
+}
+
+static ax_status shape_panels(ax_work* w, ax_error* error)
+{
+    ax_cut_plan* plan = w->plan;
+    bool one_piece = plan->joint->one_piece;
+    ax_status status = one_piece ? ax_openings_check(w, error) : AX_OK;
+    for (int t = 0; t < plan->panel_count && status == AX_OK; ++t) {
+        ax_cut_panel* p = &plan->panels[t];
         p->first = plan->path_count;
-        ax_panel_put_outline(&w->builder, &o, &ax_stay);
-        for (int k = 0; k < 3 && o.hole_radius > 0; ++k)
-            ax_panel_put_hole(&w->builder, &o, k, &ax_stay);
+        if (one_piece)
+            ax_openings_put_panel(w, t);
+        else
+            status = put_loose_panel(w, t, error);
         p->count = plan->path_count - p->first;
         for (int k = p->first; k < p->first + p->count; ++k)
             p->area += ax_path_area(plan, &plan->paths[k]);
@@ -84,15 +109,14 @@ static ax_status shape_panels(ax_work* w, ax_error* error)
         plan->area += p->area;
         plan->mass += p->mass;
     }
-    return AX_OK;
+    return status;
 }
 
-static void draw_panel(ax_work* w, int t)
+static void draw_loose_panel(ax_work* w, int t)
 {
     const ax_cut_panel* p = &w->plan->panels[t];
     ax_motion motion = {p->placement[0], p->placement[1], p->placement[2], p->placement[3]};
     ax_panel_outline o = ax_work_outline(w, t, w->plan->kerf / 2);
-    ax_put_label(w, t);
     for (int k = 0; k < 3 && o.hole_radius > 0; ++k) {
         ax_plan_item(&w->builder, AX_HOLE, t, "hole-%s.%d", p->name, k);
         ax_panel_put_hole(&w->builder, &o, k, &motion);
@@ -104,15 +128,20 @@ static void draw_panel(ax_work* w, int t)
 static void draw_sheets(ax_work* w)
 {
     ax_cut_plan* plan = w->plan;
+    w->met = AX_NEW0(unsigned char, 3 * plan->panel_count);
     for (int s = 0; s < plan->sheet_count; ++s) {
         ax_cut_sheet* sheet = &plan->sheets[s];
         double area = 0;
         sheet->first = plan->item_count;
-        for (int t = 0; t < plan->panel_count; ++t)
-            if (plan->panels[t].sheet == s) {
-                draw_panel(w, t);
-                area += plan->panels[t].area;
-            }
+        for (int i = w->sheet_start[s]; i < w->sheet_start[s + 1]; ++i) {
+            int t = w->sheet_panels[i];
+            ax_put_label(w, t);
+            if (!plan->joint->one_piece)
+                draw_loose_panel(w, t);
+            area += plan->panels[t].area;
+        }
+        if (plan->joint->one_piece)
+            ax_openings_draw(w, s);
         ax_put_notes(w, s);
         sheet->count = plan->item_count - sheet->first;
         sheet->utilisation = area / (sheet->width * sheet->height);
@@ -148,20 +177,29 @@ ax_status ax_fabricate(const ax_design* design, const ax_fabricate_options* opti
                  .progress = progress,
                  .plan = plan,
                  .builder = {.plan = plan}};
+    int pieces = 0;
     begin(&w);
-    ax_status status = w.plan->joint->work->rule(&w.joint, &w.rule, error);
+    name_panels(&w);
+    ax_status status = plan->joint->work->rule(&w.joint, &w.rule, error);
+    if (status == AX_OK)
+        status = ax_find_pieces(&w, &pieces, error);
     if (status == AX_OK)
         status = shape_panels(&w, error);
     if (status == AX_OK) {
         ax_choose_labels(&w);
-        status = ax_lay_out(&w, error);
+        status = ax_lay_out(&w, pieces, error);
     }
     if (status == AX_OK) {
         draw_sheets(&w);
         measure(plan);
-    } else
+        status = ax_prove_clearance(&w, progress, error);
+    }
+    if (status != AX_OK)
         ax_cut_plan_free(plan);
     ax_free(w.flat);
     ax_free(w.held);
+    ax_free(w.sheet_start);
+    ax_free(w.sheet_panels);
+    ax_free(w.met);
     return status;
 }

@@ -19,6 +19,7 @@ typedef struct ax_panel_rule {
     double hole_offset; // holes lie on the bisector as well
     double hole_radius; // 0: none
     double play;        // neighbours must stay this far apart, besides the kerf
+    double ligament;    // left at each hinge, in one piece with both panels; 0: panels are separate
 } ax_panel_rule;
 
 struct ax_joint_work {
@@ -26,6 +27,6 @@ struct ax_joint_work {
     ax_status (*rule)(const ax_joint_job* job, ax_panel_rule* rule, ax_error* error);
     // Force that one joint is taken to bear, N.
     double (*rated)(const ax_joint_job* job);
-    // Loose parts that `joints` inner hinges and `rim` hinges of one panel take; count 0: none.
+    // Loose parts for `joints` hinges where two panels meet. NULL: none.
     void (*part)(const ax_joint_job* job, int joints, ax_cut_part* part);
 };

@@ -16,7 +16,9 @@ typedef struct ax_work {
     ax_panel_rule rule;
     ax_cut_plan* plan;
     ax_plan_builder builder;
-    double strip; // mm, height kept for notes at the foot of a sheet
+    int *sheet_start, *sheet_panels; // panels of sheet s: sheet_panels[sheet_start[s] .. sheet_start[s + 1])
+    unsigned char* met;              // corners that a drawn opening has passed
+    double strip;                    // mm, height kept for notes at the foot of a sheet
 } ax_work;
 
 static inline ax_panel_outline ax_work_outline(const ax_work* w, int triangle, double grow)
@@ -26,8 +28,24 @@ static inline ax_panel_outline ax_work_outline(const ax_work* w, int triangle, d
     return ax_panel_make(&w->rule, at, grow);
 }
 
-// layout.c: places panels on sheets. Fills the plan's sheets (size only) and the panels' placement, sheet and piece.
-ax_status ax_lay_out(ax_work* w, ax_error* error);
+// pieces.c: numbers the pieces in which a one-piece sheet is cut so that each fits `room` (width, height in mm).
+ax_status ax_cut_pieces(ax_work* w, const double room[2], int* count, ax_error* error);
+// The motion that turns a set of panels so that it lies in [0, width] x [0, height] within `room`; false if there is none.
+bool ax_turn_to_fit(const ax_work* w, int count, const int* panels, const double room[2], ax_motion* motion,
+                    double size[2]);
+// How far outlines reach beyond the hinges, mm.
+double ax_outreach(const ax_work* w);
+
+// clearance.c: least distance of two panels of one layer in the flat state, mm, as far as it is under `within`.
+double ax_flat_clearance(const ax_work* w, double within);
+
+// Whatever joint and material bear at each hinge, clearance and clashes; fills the plan's hinges and clashes.
+ax_status ax_prove_clearance(ax_work* w, const ax_progress* progress, ax_error* error);
+
+// layout.c: numbers the pieces of the panels; then, with panels shaped, places them on sheets. Fills the plan's sheets (size only) and
+// the panels' placement and sheet.
+ax_status ax_find_pieces(ax_work* w, int* count, ax_error* error);
+ax_status ax_lay_out(ax_work* w, int pieces, ax_error* error);
 
 // label.c: the name inside the panel, upright as in the flat state.
 void ax_choose_labels(ax_work* w);
