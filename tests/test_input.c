@@ -571,6 +571,7 @@ static void wrong_tables_are_told_by_line_and_column(void** state)
         {"x,y,lambda\n1,2,0\n", "line 2, column 3", "greater than 0"},
         {"x,y,lambda\n1,2,nan\n", "line 2, column 3", "a number"},
         {"x,y,lambda\n1,2,1e999\n", "line 2, column 3", "a number"},
+        {"x,y,lambda\n1,-1e13,1\n", "line 2, column 2", "larger"},
         {"x,y,lambda\n1,\"2,1\n", "line 2, column 2", "quote"},
         {"x,y,lambda\n1,\"2\"3,1\n", "line 2, column 2", "quote"},
         {"x,y,x,lambda\n", "line 1, column 3", "twice"},

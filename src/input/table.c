@@ -161,6 +161,8 @@ static const char* take_value(reader* r, column kind, char* field)
     double* value = kind == COLUMN_SCALE ? &t->scale[t->count] : &t->places[t->count][kind - COLUMN_X];
     if (!read_number(r, field, value))
         return "a number should stand here";
+    if (fabs(*value) > 1e12) // beyond, boxes of places in single precision lose their differences
+        return "this number is larger than any sheet";
     if (kind == COLUMN_SCALE && !(*value > 0))
         return "a scale factor must be greater than 0";
     return NULL;
@@ -321,7 +323,7 @@ static void offer(void* context, int place)
     n->limit = n->count < neighbours ? INFINITY : n->squared[neighbours - 1];
 }
 
-// Local linear fit with the weights of Franke and Little (1980): infinite at a sample, zero at the farthest one, so that the
+// Local linear fit with the weights of Franke and Nielson (1980): infinite at a sample, zero at the farthest one, so that the
 // field takes each sample's value and has no steps. Where the samples lie on a line or at one place, their weighted mean.
 static double fit(const nearest* n)
 {
