@@ -4,7 +4,40 @@
 
 #include "ax/design.h"
 
-// --- the cut plan
+// --- materials
+
+typedef struct ax_material {
+    const char *name, *doc; // "plywood-3"
+    double thickness;       // mm
+    double density;         // kg/m3
+    double kerf;            // mm, typical full width of a laser's cut; a suggestion, applied only when asked for
+    double feature;         // mm, least width of what must not break
+    double strength;        // MPa, tension across a feature, for ratings
+    double stiffness;       // MPa, Young's modulus
+} ax_material;
+const ax_material* ax_materials(int* count);
+const ax_material* ax_material_named(const char* name); // NULL: none
+
+// --- joints
+
+typedef struct ax_joint_parameter {
+    const char *name, *unit, *doc; // "hole", "mm"
+    double least, most, standard;
+} ax_joint_parameter;
+
+// One way of joining panels: a file of its own in src/fabricate/joints.
+typedef struct ax_joint_type {
+    const char *name, *doc; // "ring"; one sentence
+    bool one_piece;         // panels hang together when cut
+    bool two_layers;        // neighbours lie on each other
+    const ax_joint_parameter* parameters;
+    int parameter_count;              // at most 8
+    const struct ax_joint_work* work; // how it is done; src/fabricate/joint_work.h
+} ax_joint_type;
+const ax_joint_type* const* ax_joint_types(int* count); // in order of their names
+const ax_joint_type* ax_joint_named(const char* name);  // NULL: none
+
+// --- operations and machine profiles
 
 // What a machine does with a line, in the order of work; notes are for people and are not machined.
 typedef enum ax_operation {
@@ -17,6 +50,27 @@ typedef enum ax_operation {
     AX_OPERATIONS
 } ax_operation;
 const char* ax_operation_name(ax_operation operation); // "LABEL"
+
+typedef struct ax_profile_pen {
+    char layer[32];
+    unsigned char rgb[3];
+    int aci;       // AutoCAD colour index, 1 to 255
+    double stroke; // mm
+    double speed;  // mm/s, for the estimate of time
+    bool used;     // false: the machine does not get this operation
+} ax_profile_pen;
+
+typedef struct ax_profile {
+    char name[32], doc[160];
+    ax_profile_pen pens[AX_OPERATIONS];
+    double travel_speed; // mm/s
+} ax_profile;
+const ax_profile* ax_profiles(int* count);
+// `name` of a profile, or the path of a JSON file (docs/making.md) that ends in .json. AX_USAGE names the known ones,
+// AX_BAD_INPUT what is wrong in the file.
+ax_status ax_profile_find(const char* name, ax_profile* profile, ax_error* error);
+
+// --- the cut plan
 
 // Vertex of a path. `bulge` shapes the way to the next vertex (from the last one of a closed path: to the first): the tangent of
 // a quarter of the arc's angle, positive counter-clockwise, 0 for a straight line. |bulge| <= 1.
@@ -99,11 +153,11 @@ typedef struct ax_cut_plan {
     ax_cut_clash* clashes; // at most AX_CLASHES of them are kept; clash_count counts these
     ax_cut_part* parts;
     int clashes_found;
-    const struct ax_joint_type* joint;
+    const ax_joint_type* joint;
     double joint_values[8]; // as used, by the joint's parameters
-    const struct ax_material* material;
-    const struct ax_profile* profile;   // borrowed from the options
-    double thickness, kerf;             // mm
+    ax_material material;
+    const ax_profile* profile;          // borrowed from the options
+    double kerf;                        // mm, full width of the beam, by half of which outlines have grown; 0: none
     double cut_length[AX_OPERATIONS];   // mm, over all sheets
     double travel;                      // mm, with the beam off
     double seconds;                     // at the machine, by the profile's speeds, without acceleration
@@ -125,60 +179,6 @@ typedef struct ax_cut_arc {
 ax_cut_arc ax_cut_arc_of(const ax_cut_point* a, const ax_cut_point* b);
 bool ax_cut_path_is_circle(const ax_cut_plan* plan, const ax_cut_path* path, double centre[2], double* radius);
 
-// --- materials
-
-typedef struct ax_material {
-    const char *name, *doc; // "plywood-3"
-    double thickness;       // mm
-    double density;         // kg/m3
-    double kerf;            // mm, typical full width of a laser's cut; a suggestion, applied only when asked for
-    double feature;         // mm, least width of what must not break
-    double strength;        // MPa, tension across a feature, for ratings
-    double stiffness;       // MPa, Young's modulus
-} ax_material;
-const ax_material* ax_materials(int* count);
-const ax_material* ax_material_named(const char* name); // NULL: none
-
-// --- joints
-
-typedef struct ax_joint_parameter {
-    const char *name, *unit, *doc; // "hole", "mm"
-    double least, most, standard;
-} ax_joint_parameter;
-
-// One way of joining panels: a file of its own in src/fabricate/joints.
-typedef struct ax_joint_type {
-    const char *name, *doc; // "ring"; one sentence
-    bool one_piece;         // panels hang together when cut
-    bool two_layers;        // neighbours lie on each other
-    const ax_joint_parameter* parameters;
-    int parameter_count;              // at most 8
-    const struct ax_joint_work* work; // how it is done; src/fabricate/joint_work.h
-} ax_joint_type;
-const ax_joint_type* const* ax_joint_types(int* count); // in order of their names
-const ax_joint_type* ax_joint_named(const char* name);  // NULL: none
-
-// --- machine profiles
-
-typedef struct ax_profile_pen {
-    char layer[32];
-    unsigned char rgb[3];
-    int aci;       // AutoCAD colour index, 1 to 255
-    double stroke; // mm
-    double speed;  // mm/s, for the estimate of time
-    bool used;     // false: the machine does not get this operation
-} ax_profile_pen;
-
-typedef struct ax_profile {
-    char name[32], doc[160];
-    ax_profile_pen pens[AX_OPERATIONS];
-    double travel_speed; // mm/s
-} ax_profile;
-const ax_profile* ax_profiles(int* count);
-// `name` of a profile, or the path of a JSON file (docs/making.md) that ends in .json. AX_USAGE names the known ones,
-// AX_BAD_INPUT what is wrong in the file.
-ax_status ax_profile_find(const char* name, ax_profile* profile, ax_error* error);
-
 // --- from design to plan
 
 typedef struct ax_sheet_size {
@@ -190,22 +190,21 @@ const ax_sheet_size* ax_sheet_sizes(int* count); // presets, "600x400"
 typedef struct ax_fabricate_options {
     const ax_joint_type* joint;
     double joint_values[8]; // by the joint's parameters; NaN: its standard
-    const ax_material* material;
+    ax_material material;
     const ax_profile* profile; // borrowed, also by the plan; NULL: generic
-    double thickness;          // mm; 0: the material's
     double sheet[2];           // mm, width and height of the stock; 0: one sheet, as large as need be
     double margin;             // mm, kept free round the stock and between a sheet's content and its notes
     double spacing;            // mm, least distance of neighbours that are packed; at least the kerf is kept
     double kerf;               // mm, full width of the beam: outlines grow by half of it, holes shrink. 0: none
     bool clearance;            // prove clearance (takes longer than the rest)
     const char* title;         // for notes, NULL: none
-    const char*
-        date; // of the recipe, as it shall be printed, NULL: none. Never the day of export: same design, same bytes
+    // of the recipe, as it shall be printed, NULL: none. Never the day of export: the same design gives the same bytes
+    const char* date;
 } ax_fabricate_options;
 ax_fabricate_options ax_fabricate_options_default(void); // bare triangles, card, one sheet, kerf 0, clearance proven
 
-// Reads "ring", or "ring:hole=4,edge=3" with parameters; "plywood-3", or "plywood-3:thickness=2.9"; "600x400". AX_USAGE says what
-// is known and what the range is.
+// Reads "ring", or "ring:hole=4,edge=3" with parameters; "plywood-3", or "plywood-3:thickness=2.9" with density (kg/m3), feature (mm)
+// and strength (MPa) likewise; "600x400", or a preset's name. AX_USAGE says what is known and what the range is.
 ax_status ax_fabricate_set_joint(ax_fabricate_options* options, const char* words, ax_error* error);
 ax_status ax_fabricate_set_material(ax_fabricate_options* options, const char* words, ax_error* error);
 ax_status ax_fabricate_set_sheet(ax_fabricate_options* options, const char* words, ax_error* error);

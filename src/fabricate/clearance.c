@@ -210,7 +210,7 @@ static void bound_panels(const ax_work* w, const double (*places)[3], double (*c
         radius[t] = 0;
         for (int k = 0; k < 3; ++k)
             radius[t] = fmax(radius[t], ax_distance3(centre[t], places[corner[k]]));
-        radius[t] += ax_outreach(w) + w->plan->thickness;
+        radius[t] += ax_outreach(w) + w->plan->material.thickness;
     }
 }
 
@@ -422,8 +422,8 @@ static prism prism_of(const ax_work* w, const double (*places)[3], int t)
                v = (dy * (p1[0] - p0[0]) - dx * (p1[1] - p0[1])) / length;
         for (int face = 0; face < 2; ++face)
             for (int d = 0; d < 3; ++d)
-                out.at[face][i][d] =
-                    places[corner[0]][d] + u * e[d] + v * f[d] + (low + face) * w->plan->thickness * out.normal[d];
+                out.at[face][i][d] = places[corner[0]][d] + u * e[d] + v * f[d] +
+                                     (low + face) * w->plan->material.thickness * out.normal[d];
     }
     return out;
 }

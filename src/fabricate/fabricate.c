@@ -24,7 +24,7 @@ ax_fabricate_options ax_fabricate_options_default(void)
 {
     ax_fabricate_options o = {
         .joint = ax_joint_named("none"),
-        .material = ax_material_named("card-0.5"),
+        .material = *ax_material_named("card-0.5"),
         .margin = 10,
         .spacing = 2,
         .clearance = true,
@@ -49,13 +49,12 @@ static void begin(ax_work* w)
     for (int k = 0; k < o->joint->parameter_count; ++k)
         plan->joint_values[k] = isnan(o->joint_values[k]) ? o->joint->parameters[k].standard : o->joint_values[k];
     plan->material = o->material;
-    plan->thickness = o->thickness > 0 ? o->thickness : o->material->thickness;
     plan->kerf = o->kerf;
     int profiles;
     plan->profile = o->profile ? o->profile : ax_profiles(&profiles);
     snprintf(plan->title, sizeof plan->title, "%s", o->title ? o->title : "");
     snprintf(plan->date, sizeof plan->date, "%s", o->date ? o->date : "");
-    w->joint = (ax_joint_job){plan->joint_values, plan->thickness, plan->kerf, plan->material};
+    w->joint = (ax_joint_job){plan->joint_values, &plan->material};
 }
 
 static void name_panels(ax_work* w)
@@ -105,7 +104,7 @@ static ax_status shape_panels(ax_work* w, ax_error* error)
         p->count = plan->path_count - p->first;
         for (int k = p->first; k < p->first + p->count; ++k)
             p->area += ax_path_area(plan, &plan->paths[k]);
-        p->mass = p->area * plan->thickness * 1e-9 * plan->material->density;
+        p->mass = p->area * plan->material.thickness * 1e-9 * plan->material.density;
         plan->area += p->area;
         plan->mass += p->mass;
     }

@@ -7,7 +7,6 @@
 // What a joint knows when it lays down its rule.
 typedef struct ax_joint_job {
     const double* value; // of the joint's parameters
-    double thickness, kerf;
     const ax_material* material;
 } ax_joint_job;
 

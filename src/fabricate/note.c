@@ -70,7 +70,7 @@ static int compose(const ax_work* w, double width, int sheet, char (*line)[160])
     say(&f, words);
     snprintf(words, sizeof words, "joint %s", p->joint->name);
     say(&f, words);
-    snprintf(words, sizeof words, "%s, %g mm thick", p->material->name, p->thickness);
+    snprintf(words, sizeof words, "%s, %g mm thick", p->material.name, p->material.thickness);
     say(&f, words);
     snprintf(words, sizeof words, p->kerf > 0 ? "kerf %g mm, compensated" : "kerf not compensated", p->kerf);
     say(&f, words);

@@ -23,7 +23,7 @@ static ax_status rule(const ax_joint_job* job, ax_panel_rule* out, ax_error* err
 // The ligament in tension.
 static double rated(const ax_joint_job* job)
 {
-    return job->value[LIGAMENT] * job->thickness * job->material->strength;
+    return job->value[LIGAMENT] * job->material->thickness * job->material->strength;
 }
 
 const ax_joint_type ax_joint_living_hinge = {

@@ -34,13 +34,13 @@ static ax_status rule(const ax_joint_job* job, ax_panel_rule* out, ax_error* err
 // The weaker of the ear, which shears along two lines at 0.6 of the tensile strength, and the pin.
 static double rated(const ax_joint_job* job)
 {
-    double ear = 2 * job->value[EDGE] * job->thickness * 0.6 * job->material->strength;
+    double ear = 2 * job->value[EDGE] * job->material->thickness * 0.6 * job->material->strength;
     return fmin(ear, AX_PI / 4 * job->value[PIN] * job->value[PIN] * pin_strength);
 }
 
 static void part(const ax_joint_job* job, int joints, ax_cut_part* out)
 {
-    snprintf(out->name, sizeof out->name, "pin or rivet, %g mm, grip %g mm", job->value[PIN], 2 * job->thickness);
+    snprintf(out->name, sizeof out->name, "pin or rivet, %g mm, grip %g mm", job->value[PIN], 2 * job->material->thickness);
     out->count = joints;
 }
 

@@ -44,7 +44,7 @@ static ax_status rule(const ax_joint_job* job, ax_panel_rule* out, ax_error* err
 // The hole shears out of the panel along two lines, at 0.6 of the tensile strength.
 static double rated(const ax_joint_job* job)
 {
-    return 2 * job->value[EDGE] * job->thickness * 0.6 * job->material->strength;
+    return 2 * job->value[EDGE] * job->material->thickness * 0.6 * job->material->strength;
 }
 
 static void part(const ax_joint_job* job, int joints, ax_cut_part* out)
