@@ -1,6 +1,7 @@
 // auxshell export: writes a document's states to files of other programs.
-#include "options.h"
+#include "fabricate.h"
 #include "output.h"
+#include "progress.h"
 
 #include "ax/document.h"
 #include "ax/export.h"
@@ -10,7 +11,13 @@
 typedef struct arguments {
     const char *document, *out;
     ax_state state;
+    fabricate_arguments fabricate;
 } arguments;
+
+static void defaults(void* given)
+{
+    fabricate_defaults(&((arguments*)given)->fabricate);
+}
 
 static const char* const states[] = {"flat", "deployed", "simulated"};
 
@@ -35,6 +42,7 @@ static const command_option options[] = {
      .first = AX_STATE_FLAT,
      .fallback = "flat for cut files, deployed otherwise",
      .offset = offsetof(arguments, state)},
+    FABRICATE_OPTIONS(arguments, fabricate),
 };
 
 // The file's name without folder and ending.
@@ -51,16 +59,27 @@ static ax_status run(const void* given, ax_error* error)
 {
     const arguments* a = given;
     ax_design design = {0};
+    ax_cut_plan plan = {0};
+    ax_fabricate_options chosen;
+    ax_profile profile;
     ax_status status = output_check(a->out, NULL, error);
+    if (status == AX_OK)
+        status = fabricate_choose(&a->fabricate, &chosen, &profile, error);
     if (status == AX_OK)
         status = ax_document_load(a->document, &design, error);
     if (status == AX_OK) {
         char title[256];
         title_of(a->document, title, sizeof title);
-        status = ax_export(&design, a->out, &(ax_export_options){.state = a->state, .title = title}, error);
+        const ax_export_options how = {
+            .state = a->state, .title = title, .fabricate = &chosen, .progress = progress_reporter(), .plan = &plan};
+        status = ax_export(&design, a->out, &how, error);
+        progress_end();
     }
     if (status == AX_OK)
         printf("Wrote %s\n", a->out);
+    if (status == AX_OK && plan.sheet_count)
+        fabricate_print(&plan, stdout);
+    ax_cut_plan_free(&plan);
     ax_design_free(&design);
     return status;
 }
@@ -81,10 +100,12 @@ const command command_export = {
     .summary = "write a state to a cut file, a 3D model, a picture or JSON",
     .text =
         "Writes a state of a document to a file, in the format that the file's ending names. Coordinates are those of "
-        "the target, in the document's unit; cut files are drawn at true size in millimetres.",
+        "the target, in the document's unit; cut files are drawn at true size in millimetres. What fits one sheet gets "
+        "the name given; several sheets become NAME-1, NAME-2 and so on beside an overview of that name.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),
+    .defaults = defaults,
     .run = run,
     .list_title = "Formats",
     .list = list_formats,

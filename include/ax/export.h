@@ -11,6 +11,7 @@ typedef struct ax_export_options {
     const char* title;                     // name shown in drawings, NULL: none
     const ax_fabricate_options* fabricate; // for cut files; its title is replaced by `title`. NULL: defaults
     const ax_progress* progress;           // NULL: none
+    ax_cut_plan* plan; // NULL, or takes the plan of a cut file, empty if it was none; freed by the caller
 } ax_export_options;
 
 // One exporter: a file of its own in src/export/types.
@@ -23,7 +24,8 @@ typedef struct ax_export_type {
     ax_status (*write)(const ax_design* design, ax_state state, const ax_export_options* options, const char* path,
                        ax_error* error); // writes the whole file to `path` as it is; the caller renames
     // Instead of `write`, for cut files: writes one sheet of the plan, or the overview if `sheet` is plan->sheet_count.
-    // With `all_sheets` it is called once, with sheet 0, and writes every sheet and the overview to one file.
+    // With `all_sheets` it is called once, with sheet 0, and writes every sheet and the overview to one file. `design` is
+    // NULL for coupons.
     ax_status (*write_sheet)(const ax_design* design, const ax_cut_plan* plan, int sheet, const char* path,
                              ax_error* error);
     bool all_sheets;
@@ -37,3 +39,6 @@ const ax_export_type* const* ax_export_types(int* count);
 // unknown ending (the message lists the known ones) or a state the format does not carry; AX_BAD_INPUT when the state is missing
 // (not simulated); AX_FAILED when the disk does not take it.
 ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error);
+
+// The same for a plan without a design, as ax_fabricate_coupon makes it. AX_USAGE unless the ending is that of a cut file.
+ax_status ax_export_plan(const ax_cut_plan* plan, const char* path, ax_error* error);

@@ -189,7 +189,7 @@ const ax_sheet_size* ax_sheet_sizes(int* count); // presets, "600x400"
 
 typedef struct ax_fabricate_options {
     const ax_joint_type* joint;
-    double joint_values[8]; // by the joint's parameters; NaN: its standard
+    double joint_values[8]; // by the joint's parameters; NaN: its standard, or more where the material asks for it
     ax_material material;
     const ax_profile* profile; // borrowed, also by the plan; NULL: generic
     double sheet[2];           // mm, width and height of the stock; 0: one sheet, as large as need be

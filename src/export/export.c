@@ -139,7 +139,13 @@ static ax_status write_sheets(const job* j, const char* path, ax_error* error)
     return status;
 }
 
-static ax_status export_plan(job* j, const char* path, ax_error* error)
+static ax_status write_plan(const job* j, const char* path, ax_error* error)
+{
+    bool one_file = j->plan->sheet_count == 1 || j->type->all_sheets;
+    return one_file ? write_one(j, path, error) : write_sheets(j, path, error);
+}
+
+static ax_status fabricate_and_write(job* j, const char* path, ax_error* error)
 {
     ax_fabricate_options fabricate = j->options->fabricate ? *j->options->fabricate : ax_fabricate_options_default();
     fabricate.title = j->options->title;
@@ -148,14 +154,19 @@ static ax_status export_plan(job* j, const char* path, ax_error* error)
     if (status != AX_OK)
         return status;
     j->plan = &plan;
-    status = plan.sheet_count > 1 && !j->type->all_sheets ? write_sheets(j, path, error) : write_one(j, path, error);
-    ax_cut_plan_free(&plan);
+    status = write_plan(j, path, error);
+    if (status == AX_OK && j->options->plan)
+        *j->options->plan = plan;
+    else
+        ax_cut_plan_free(&plan);
     return status;
 }
 
 ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error)
 {
     const ax_export_options given = options ? *options : (ax_export_options){0};
+    if (given.plan)
+        *given.plan = (ax_cut_plan){0};
     const ax_export_type* type = find_type(path);
     if (!type)
         return fail_unknown_ending(path, error);
@@ -164,5 +175,16 @@ ax_status ax_export(const ax_design* design, const char* path, const ax_export_o
     if (status != AX_OK)
         return status;
     job j = {.design = design, .type = type, .state = state, .options = &given};
-    return type->write_sheet ? export_plan(&j, path, error) : write_one(&j, path, error);
+    return type->write_sheet ? fabricate_and_write(&j, path, error) : write_one(&j, path, error);
+}
+
+ax_status ax_export_plan(const ax_cut_plan* plan, const char* path, ax_error* error)
+{
+    const ax_export_type* type = find_type(path);
+    if (!type)
+        return fail_unknown_ending(path, error);
+    if (!type->write_sheet)
+        return ax_fail(error, AX_USAGE, "A %s (%s) cannot hold a cut plan.", type->name, type->ending);
+    job j = {.type = type, .state = AX_STATE_FLAT, .plan = plan};
+    return write_plan(&j, path, error);
 }

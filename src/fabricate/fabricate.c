@@ -46,9 +46,14 @@ static void begin(ax_work* w)
             w->flat[h][k] = mm * d->flat[h][k];
     w->held = ax_linkage_hinge_triangles(w->linkage);
     plan->joint = o->joint;
-    for (int k = 0; k < o->joint->parameter_count; ++k)
-        plan->joint_values[k] = isnan(o->joint_values[k]) ? o->joint->parameters[k].standard : o->joint_values[k];
     plan->material = o->material;
+    bool chosen[8] = {false};
+    for (int k = 0; k < o->joint->parameter_count; ++k) {
+        chosen[k] = !isnan(o->joint_values[k]);
+        plan->joint_values[k] = chosen[k] ? o->joint_values[k] : o->joint->parameters[k].standard;
+    }
+    if (o->joint->work->suit)
+        o->joint->work->suit(&plan->material, chosen, plan->joint_values);
     plan->kerf = o->kerf;
     int profiles;
     plan->profile = o->profile ? o->profile : ax_profiles(&profiles);
@@ -165,6 +170,19 @@ static void measure(ax_cut_plan* plan)
     plan->seconds += plan->travel / plan->profile->travel_speed;
 }
 
+static void count_parts(ax_work* w)
+{
+    const struct ax_joint_work* work = w->plan->joint->work;
+    int joints = 0;
+    for (int h = 0; h < w->linkage->hinge_count; ++h)
+        joints += !w->linkage->on_rim[h];
+    if (!work->part)
+        return;
+    w->plan->parts = AX_NEW0(ax_cut_part, 1);
+    w->plan->part_count = 1;
+    work->part(&w->joint, joints, &w->plan->parts[0]);
+}
+
 ax_status ax_fabricate(const ax_design* design, const ax_fabricate_options* options, const ax_progress* progress,
                        ax_cut_plan* plan, ax_error* error)
 {
@@ -191,6 +209,7 @@ ax_status ax_fabricate(const ax_design* design, const ax_fabricate_options* opti
     if (status == AX_OK) {
         draw_sheets(&w);
         measure(plan);
+        count_parts(&w);
         status = ax_prove_clearance(&w, progress, error);
     }
     if (status != AX_OK)

@@ -22,6 +22,8 @@ typedef struct ax_panel_rule {
 } ax_panel_rule;
 
 struct ax_joint_work {
+    // Raises standards, given by parameter, to what the material asks for; `chosen` tells which were not left alone. NULL: none.
+    void (*suit)(const ax_material* material, const bool* chosen, double* value);
     // Checks the parameters against each other and the material. AX_CANNOT_REALISE names the limit.
     ax_status (*rule)(const ax_joint_job* job, ax_panel_rule* rule, ax_error* error);
     // Force that one joint is taken to bear, N.

@@ -2,11 +2,19 @@
 // hinge lies in the middle of the ligament.
 #include "fabricate/joint_work.h"
 
+#include <math.h>
+
 enum { LIGAMENT };
 
 static const ax_joint_parameter parameters[] = {
     [LIGAMENT] = {"ligament", "mm", "width of the material left at each hinge", 0.2, 100, 2},
 };
+
+static void suit(const ax_material* material, const bool* chosen, double* value)
+{
+    if (!chosen[LIGAMENT])
+        value[LIGAMENT] = fmax(value[LIGAMENT], material->feature);
+}
 
 static ax_status rule(const ax_joint_job* job, ax_panel_rule* out, ax_error* error)
 {
@@ -32,5 +40,5 @@ const ax_joint_type ax_joint_living_hinge = {
     .one_piece = true,
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,
-    .work = &(const struct ax_joint_work){.rule = rule, .rated = rated},
+    .work = &(const struct ax_joint_work){.suit = suit, .rule = rule, .rated = rated},
 };

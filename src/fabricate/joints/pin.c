@@ -14,6 +14,12 @@ static const ax_joint_parameter parameters[] = {
 };
 static const double pin_strength = 60; // MPa in shear: aluminium rivets
 
+static void suit(const ax_material* material, const bool* chosen, double* value)
+{
+    if (!chosen[EDGE])
+        value[EDGE] = fmax(value[EDGE], material->feature);
+}
+
 static ax_status rule(const ax_joint_job* job, ax_panel_rule* out, ax_error* error)
 {
     const double* v = job->value;
@@ -40,7 +46,8 @@ static double rated(const ax_joint_job* job)
 
 static void part(const ax_joint_job* job, int joints, ax_cut_part* out)
 {
-    snprintf(out->name, sizeof out->name, "pin or rivet, %g mm, grip %g mm", job->value[PIN], 2 * job->material->thickness);
+    snprintf(out->name, sizeof out->name, "pin or rivet, %g mm, grip %g mm", job->value[PIN],
+             2 * job->material->thickness);
     out->count = joints;
 }
 
@@ -50,5 +57,5 @@ const ax_joint_type ax_joint_pin = {
     .two_layers = true,
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,
-    .work = &(const struct ax_joint_work){.rule = rule, .rated = rated, .part = part},
+    .work = &(const struct ax_joint_work){.suit = suit, .rule = rule, .rated = rated, .part = part},
 };

@@ -1,6 +1,7 @@
 // Rings through holes: each panel has a hole near every corner, and a ring joins two of them. Pulled taut, the ring's inside
 // reaches from hole edge to hole edge with the hinge in its middle, so the holes lie half a ring and a hole's radius inward.
 #include "fabricate/joint_work.h"
+#include <math.h>
 #include <stdio.h>
 
 enum { RING, HOLE, EDGE, GAP };
@@ -11,6 +12,19 @@ static const ax_joint_parameter parameters[] = {
     [EDGE] = {"edge", "mm", "material between a hole and the panel's outline", 0.2, 100, 2},
     [GAP] = {"gap", "mm", "least distance of neighbours", 0, 100, 1},
 };
+
+static double least_ring(const double* value)
+{
+    return value[HOLE] + 4 * value[EDGE] + 2 * value[GAP];
+}
+
+static void suit(const ax_material* material, const bool* chosen, double* value)
+{
+    if (!chosen[EDGE])
+        value[EDGE] = fmax(value[EDGE], material->feature);
+    if (!chosen[RING])
+        value[RING] = fmax(value[RING], least_ring(value));
+}
 
 // The disc round a hole touches both edges of a corner of 60 degrees if its centre lies (radius + inset) / sin 30 degrees from the
 // hinge, and the hole must not lie nearer to it.
@@ -23,7 +37,7 @@ static ax_status rule(const ax_joint_job* job, ax_panel_rule* out, ax_error* err
             "Holes %g mm from the outline tear out of %s, of which nothing narrower than %g mm should be left. "
             "Set edge=%g or more, or choose another material.",
             v[EDGE], job->material->name, job->material->feature, job->material->feature);
-    double least = v[HOLE] + 4 * v[EDGE] + 2 * v[GAP];
+    double least = least_ring(v);
     if (v[RING] < least)
         return ax_fail(
             error, AX_CANNOT_REALISE,
@@ -58,5 +72,5 @@ const ax_joint_type ax_joint_ring = {
     .doc = "Holes near the corners; a ring joins two panels.",
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,
-    .work = &(const struct ax_joint_work){.rule = rule, .rated = rated, .part = part},
+    .work = &(const struct ax_joint_work){.suit = suit, .rule = rule, .rated = rated, .part = part},
 };
