@@ -9,6 +9,10 @@ static inline v4 load(const ax_vec4* x)
     return *(const v4*)x;
 }
 
+// Doubles that a backward pass asks for before it needs them: hardware foresees the forward pass, but not this one, which goes
+// down from panel to panel.
+enum { AHEAD = 256 };
+
 // One function per width: the columns' values stay in registers.
 #define FORWARD(W)                                                                                                     \
     static void forward_##W(const ax_panel* p, const double* restrict value, const int* restrict index, ax_vec4* x)    \
@@ -34,24 +38,26 @@ static inline v4 load(const ax_vec4* x)
 #define BACKWARD(W)                                                                                                    \
     static void backward_##W(const ax_panel* p, const double* restrict value, const int* restrict index, ax_vec4* x)   \
     {                                                                                                                  \
-        const double *triangle = value, *row = value + W * (W + 1) / 2;                                                \
+        const double *triangle = value, *row = value + W * (W + 1) / 2 + (size_t)p->rows * W;                          \
         v4 c[W], odd[W];                                                                                               \
         for (int j = 0; j < W; ++j) {                                                                                  \
             c[j] = load(x + p->first + j);                                                                             \
             odd[j] = (v4){0, 0, 0, 0};                                                                                 \
         }                                                                                                              \
-        int r = 0;                                                                                                     \
-        for (; r + 1 < p->rows; r += 2, row += 2 * W) {                                                                \
-            v4 y = load(x + index[r]), z = load(x + index[r + 1]);                                                     \
+        int r = p->rows;                                                                                               \
+        for (; r >= 2; r -= 2) {                                                                                       \
+            row -= 2 * W;                                                                                              \
+            __builtin_prefetch(row - AHEAD);                                                                           \
+            v4 y = load(x + index[r - 2]), z = load(x + index[r - 1]);                                                 \
             for (int j = 0; j < W; ++j) {                                                                              \
                 c[j] -= row[j] * y;                                                                                    \
                 odd[j] -= row[W + j] * z;                                                                              \
             }                                                                                                          \
         }                                                                                                              \
-        if (r < p->rows) {                                                                                             \
-            v4 y = load(x + index[r]);                                                                                 \
+        if (r) {                                                                                                       \
+            v4 y = load(x + index[0]);                                                                                 \
             for (int j = 0; j < W; ++j)                                                                                \
-                c[j] -= row[j] * y;                                                                                    \
+                c[j] -= row[j - W] * y;                                                                                \
         }                                                                                                              \
         for (int j = W - 1; j >= 0; --j) {                                                                             \
             const double* column = triangle + j * W - j * (j - 1) / 2;                                                 \
