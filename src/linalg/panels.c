@@ -9,26 +9,38 @@ static inline v4 load(const ax_vec4* x)
     return *(const v4*)x;
 }
 
+// Where a pass works: x, and behind its n rows, in the numbering of indices, the buffers.
+typedef struct rows {
+    ax_vec4 *x, *buffers;
+    int n;
+} rows;
+
+static inline ax_vec4* at(const rows* to, int index)
+{
+    return index < to->n ? to->x + index : to->buffers + (index - to->n);
+}
+
 // Doubles that a backward pass asks for before it needs them: hardware foresees the forward pass, but not this one, which goes
 // down from panel to panel.
 enum { AHEAD = 256 };
 
 // One function per width: the columns' values stay in registers.
 #define FORWARD(W)                                                                                                     \
-    static void forward_##W(const ax_panel* p, const double* restrict value, const int* restrict index, ax_vec4* x)    \
+    static void forward_##W(const ax_panel* p, const double* restrict value, const int* restrict index,                \
+                            const rows* on)                                                                            \
     {                                                                                                                  \
         v4 c[W];                                                                                                       \
         for (int j = 0; j < W; ++j)                                                                                    \
-            c[j] = load(x + p->first + j);                                                                             \
+            c[j] = load(on->x + p->first + j);                                                                         \
         for (int j = 0; j < W; ++j) {                                                                                  \
             c[j] *= *value++;                                                                                          \
             for (int i = j + 1; i < W; ++i)                                                                            \
                 c[i] -= *value++ * c[j];                                                                               \
         }                                                                                                              \
         for (int j = 0; j < W; ++j)                                                                                    \
-            *(v4*)(x + p->first + j) = c[j];                                                                           \
+            *(v4*)(on->x + p->first + j) = c[j];                                                                       \
         for (int r = 0; r < p->rows; ++r, value += W) {                                                                \
-            v4* to = (v4*)(x + index[r]);                                                                              \
+            v4* to = (v4*)at(on, index[r]);                                                                            \
             v4 sum = value[0] * c[0];                                                                                  \
             for (int j = 1; j < W; ++j)                                                                                \
                 sum += value[j] * c[j];                                                                                \
@@ -36,26 +48,27 @@ enum { AHEAD = 256 };
         }                                                                                                              \
     }
 #define BACKWARD(W)                                                                                                    \
-    static void backward_##W(const ax_panel* p, const double* restrict value, const int* restrict index, ax_vec4* x)   \
+    static void backward_##W(const ax_panel* p, const double* restrict value, const int* restrict index,               \
+                             const rows* on)                                                                           \
     {                                                                                                                  \
         const double *triangle = value, *row = value + W * (W + 1) / 2 + (size_t)p->rows * W;                          \
         v4 c[W], odd[W];                                                                                               \
         for (int j = 0; j < W; ++j) {                                                                                  \
-            c[j] = load(x + p->first + j);                                                                             \
+            c[j] = load(on->x + p->first + j);                                                                         \
             odd[j] = (v4){0, 0, 0, 0};                                                                                 \
         }                                                                                                              \
         int r = p->rows;                                                                                               \
         for (; r >= 2; r -= 2) {                                                                                       \
             row -= 2 * W;                                                                                              \
             __builtin_prefetch(row - AHEAD);                                                                           \
-            v4 y = load(x + index[r - 2]), z = load(x + index[r - 1]);                                                 \
+            v4 y = load(at(on, index[r - 2])), z = load(at(on, index[r - 1]));                                         \
             for (int j = 0; j < W; ++j) {                                                                              \
                 c[j] -= row[j] * y;                                                                                    \
                 odd[j] -= row[W + j] * z;                                                                              \
             }                                                                                                          \
         }                                                                                                              \
         if (r) {                                                                                                       \
-            v4 y = load(x + index[0]);                                                                                 \
+            v4 y = load(at(on, index[0]));                                                                             \
             for (int j = 0; j < W; ++j)                                                                                \
                 c[j] -= row[j - W] * y;                                                                                \
         }                                                                                                              \
@@ -65,7 +78,7 @@ enum { AHEAD = 256 };
             for (int i = j + 1; i < W; ++i)                                                                            \
                 c[j] -= column[i - j] * c[i];                                                                          \
             c[j] *= column[0];                                                                                         \
-            *(v4*)(x + p->first + j) = c[j];                                                                           \
+            *(v4*)(on->x + p->first + j) = c[j];                                                                       \
         }                                                                                                              \
     }
 // clang-format off
@@ -73,77 +86,67 @@ FORWARD(1) FORWARD(2) FORWARD(3) FORWARD(4)
 BACKWARD(1) BACKWARD(2) BACKWARD(3) BACKWARD(4)
     // clang-format on
 
-    static void forward(const ax_panels* s, const ax_panel* p)
+    typedef struct pass {
+    const ax_panels* panels;
+    rows on;
+} pass;
+
+static void forward(const pass* p, int from, int to)
 {
-    static void (*const kernel[])(const ax_panel*, const double*, const int*, ax_vec4*) = {NULL, forward_1, forward_2,
-                                                                                           forward_3, forward_4};
-    kernel[p->width](p, s->value + p->value, s->index + p->index, s->work);
+    static void (*const kernel[])(const ax_panel*, const double*, const int*,
+                                  const rows*) = {NULL, forward_1, forward_2, forward_3, forward_4};
+    const ax_panels* s = p->panels;
+    for (const ax_panel* panel = s->panels + from; panel < s->panels + to; ++panel)
+        kernel[panel->width](panel, s->value + panel->value, s->index + panel->index, &p->on);
 }
 
-static void backward(const ax_panels* s, const ax_panel* p)
+static void backward(const pass* p, int from, int to)
 {
-    static void (*const kernel[])(const ax_panel*, const double*, const int*, ax_vec4*) = {NULL, backward_1, backward_2,
-                                                                                           backward_3, backward_4};
-    kernel[p->width](p, s->value + p->value, s->index + p->index, s->work);
+    static void (*const kernel[])(const ax_panel*, const double*, const int*,
+                                  const rows*) = {NULL, backward_1, backward_2, backward_3, backward_4};
+    const ax_panels* s = p->panels;
+    for (const ax_panel* panel = s->panels + to; panel-- > s->panels + from;)
+        kernel[panel->width](panel, s->value + panel->value, s->index + panel->index, &p->on);
 }
 
 static ax_vec4* buffer(const ax_panels* s, int part)
 {
-    return s->work + s->n + (size_t)part * (size_t)ax_panels_top(s);
-}
-
-typedef struct pass {
-    ax_panels* panels;
-    ax_vec4* x;
-} pass;
-
-static void copy_columns(const ax_panels* s, int part, ax_vec4* to, const ax_vec4* from)
-{
-    int first = s->part_column[part];
-    memcpy(to + first, from + first, (size_t)(s->part_column[part + 1] - first) * sizeof *to);
+    return s->buffers + (size_t)part * (size_t)ax_panels_top(s);
 }
 
 static void forward_part(void* context, int part)
 {
     const pass* p = context;
     const ax_panels* s = p->panels;
-    copy_columns(s, part, s->work, (const ax_vec4*)p->x);
     memset(buffer(s, part), 0, (size_t)ax_panels_top(s) * sizeof(ax_vec4));
-    for (int k = s->part_panel[part]; k < s->part_panel[part + 1]; ++k)
-        forward(s, s->panels + k);
+    forward(p, s->part_panel[part], s->part_panel[part + 1]);
 }
 
 static void backward_part(void* context, int part)
 {
     const pass* p = context;
     const ax_panels* s = p->panels;
-    memcpy(buffer(s, part), s->work + s->top_first, (size_t)ax_panels_top(s) * sizeof(ax_vec4));
-    for (int k = s->part_panel[part + 1] - 1; k >= s->part_panel[part]; --k)
-        backward(s, s->panels + k);
-    copy_columns(s, part, p->x, (const ax_vec4*)s->work);
+    memcpy(buffer(s, part), p->on.x + s->top_first, (size_t)ax_panels_top(s) * sizeof(ax_vec4));
+    backward(p, s->part_panel[part], s->part_panel[part + 1]);
 }
 
 void ax_panels_solve(ax_panels* s, ax_pool* pool, ax_vec4* x)
 {
-    pass p = {s, x};
+    pass p = {s, {x, s->buffers, s->n}};
     ax_pool_run(pool, forward_part, &p, s->parts);
-    copy_columns(s, s->parts, s->work, (const ax_vec4*)x);
     for (int part = 0; part < s->parts; ++part)
         for (int k = 0; k < ax_panels_top(s); ++k)
-            *(v4*)(s->work + s->top_first + k) += load(buffer(s, part) + k);
-    for (int k = s->part_panel[s->parts]; k < s->panel_count; ++k)
-        forward(s, s->panels + k);
-    for (int k = s->panel_count - 1; k >= s->part_panel[s->parts]; --k)
-        backward(s, s->panels + k);
+            *(v4*)(x + s->top_first + k) += load(buffer(s, part) + k);
+    forward(&p, s->part_panel[s->parts], s->panel_count);
+    backward(&p, s->part_panel[s->parts], s->panel_count);
     ax_pool_run(pool, backward_part, &p, s->parts);
-    copy_columns(s, s->parts, x, (const ax_vec4*)s->work);
 }
 
 void ax_panels_free(ax_panels* s)
 {
     if (!s)
         return;
-    void* blocks[] = {s->panels, s->nodes, s->index, s->value, s->order, s->work, s};
+    void* blocks[] = {s->panels, s->nodes, s->index, s->value, s->order, s->buffers, s};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
 }

@@ -325,8 +325,7 @@ ax_panels* ax_panels_analyse(const ax_sparse* matrix, const int* order)
     list_rows(s, start, earlier);
     measure_stacks(s);
     s->value = ax_alloc_aligned(s->value_count, sizeof *s->value);
-    size_t rows = (size_t)n + (size_t)s->parts * (size_t)ax_panels_top(s);
-    s->work = ax_alloc_aligned(rows, sizeof *s->work);
+    s->buffers = ax_alloc_aligned((size_t)s->parts * (size_t)ax_panels_top(s), sizeof *s->buffers);
     void* blocks[] = {start,      earlier,   mark,  parent, count, post,       by_post,
                       new_parent, new_count, nodes, work,   owner, node_parent};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
