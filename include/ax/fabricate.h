@@ -146,8 +146,9 @@ typedef struct ax_cut_plan {
     ax_cut_point* points;
     ax_cut_path* paths;
     ax_cut_item* items;
-    ax_cut_sheet* sheets;  // to be cut
-    ax_cut_sheet overview; // all panels in place, numbered, NOTE only; empty (count 0) when there is one sheet in place
+    ax_cut_sheet* sheets; // to be cut
+    ax_cut_sheet
+        overview; // all panels in place with name and sheet ("C14/2"), NOTE only; empty (count 0) if there is one sheet
     ax_cut_panel* panels;
     ax_cut_hinge* hinges;
     ax_cut_clash* clashes; // at most AX_CLASHES of them are kept; clash_count counts these

@@ -302,7 +302,8 @@ static void find_mouths(ax_work* w, int (*mouth)[3])
         double angle = ax_mouth_angle(w->flat[all[m][0]], w->flat[h], w->flat[all[m][2]]);
         if (place[h] < 0) {
             place[h] = plan->hinge_count++;
-            plan->hinges[place[h]] = (ax_cut_hinge){.hinge = h, .mouth = INFINITY, .clearance = NAN, .force = NAN};
+            plan->hinges[place[h]] =
+                (ax_cut_hinge){.hinge = h, .seam = w->seam[h], .mouth = INFINITY, .clearance = NAN, .force = NAN};
         }
         ax_cut_hinge* hinge = &plan->hinges[place[h]];
         if (angle < hinge->mouth) {

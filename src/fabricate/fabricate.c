@@ -140,8 +140,14 @@ static void draw_sheets(ax_work* w)
         for (int i = w->sheet_start[s]; i < w->sheet_start[s + 1]; ++i) {
             int t = w->sheet_panels[i];
             ax_put_label(w, t);
-            if (!plan->joint->one_piece)
+            if (!isnan(w->outside[t][0]))
+                ax_put_label_outside(w, t, w->outside[t][0], w->outside[t][1], w->outside[t][2]);
+            if (plan->joint->one_piece)
+                ax_put_seams(w, t);
+            else
                 draw_loose_panel(w, t);
+            if (!plan->joint->one_piece && !plan->in_place)
+                ax_put_neighbours(w, t);
             area += plan->panels[t].area;
         }
         if (plan->joint->one_piece)
@@ -201,6 +207,8 @@ ax_status ax_fabricate(const ax_design* design, const ax_fabricate_options* opti
     if (status == AX_OK)
         status = ax_find_pieces(&w, &pieces, error);
     if (status == AX_OK)
+        ax_number_seams(&w);
+    if (status == AX_OK)
         status = shape_panels(&w, error);
     if (status == AX_OK) {
         ax_choose_labels(&w);
@@ -209,6 +217,8 @@ ax_status ax_fabricate(const ax_design* design, const ax_fabricate_options* opti
     if (status == AX_OK) {
         draw_sheets(&w);
         measure(plan);
+        if (plan->sheet_count > 1)
+            ax_draw_overview(&w);
         count_parts(&w);
         status = ax_prove_clearance(&w, progress, error);
     }
@@ -219,5 +229,7 @@ ax_status ax_fabricate(const ax_design* design, const ax_fabricate_options* opti
     ax_free(w.sheet_start);
     ax_free(w.sheet_panels);
     ax_free(w.met);
+    ax_free(w.seam);
+    ax_free(w.outside);
     return status;
 }

@@ -278,15 +278,44 @@ typedef struct shelf {
     loose* panels;
 } shelf;
 
+// Middle of the highest part of a panel.
+static double top_of(const loose* p)
+{
+    double sum = 0;
+    int count = 0;
+    for (int k = 0; k < 3; ++k)
+        if (p->disc[k][1] + p->radius > p->hi[1] - 1e-6)
+            sum += p->disc[k][0], ++count;
+    return sum / count;
+}
+
+// Names of small panels stand on the shelf's panels if they are far enough apart.
+static void stand_names(ax_work* w, const shelf* f, double x, double y, double tall)
+{
+    double last = -INFINITY;
+    for (int i = 0; i < f->count; ++i) {
+        double middle = top_of(&f->panels[i]);
+        if (ax_label_zone(w, f->triangles[i]) <= 0 || middle - last < ax_label_pitch())
+            continue;
+        double* at = w->outside[f->triangles[i]];
+        at[0] = x + middle, at[1] = y + f->panels[i].hi[1], at[2] = y + tall;
+        last = middle;
+        --w->plan->labels_dropped, ++w->plan->labels_outside;
+    }
+}
+
 static void close_shelf(ax_work* w, stock* s, shelf* f)
 {
-    double tall = 0;
-    for (int i = 0; i < f->count; ++i)
+    double tall = 0, zone = 0;
+    for (int i = 0; i < f->count; ++i) {
         tall = fmax(tall, f->panels[i].hi[1]);
-    open_shelf(w, s, tall);
+        zone = fmax(zone, ax_label_zone(w, f->triangles[i]));
+    }
+    open_shelf(w, s, tall + zone);
+    double x = w->options->margin, y = floor_of(w) + s->top - tall - zone;
     for (int i = 0; i < f->count; ++i)
-        place(&w->plan->panels[f->triangles[i]], s->sheet, &f->panels[i].motion, w->options->margin,
-              floor_of(w) + s->top - tall);
+        place(&w->plan->panels[f->triangles[i]], s->sheet, &f->panels[i].motion, x, y);
+    stand_names(w, f, x, y, tall + 1.5);
     f->count = 0;
 }
 
@@ -327,7 +356,7 @@ static ax_status pack_rows(ax_work* w, stock* s, ax_error* error)
             close_shelf(w, s, &f);
             stands = stand(w, s, &f, t, &p);
         }
-        if (!stands || p.hi[1] > s->usable[1])
+        if (!stands || p.hi[1] + ax_label_zone(w, t) > s->usable[1])
             status = fail_too_large(w, t, &p, s, error);
     }
     if (status == AX_OK)
@@ -357,8 +386,10 @@ static ax_status pack_on_one(ax_work* w, ax_error* error)
     if (status != AX_OK)
         return status;
     double unused = floor(s.top - s.tall);
-    for (int t = 0; t < plan->panel_count; ++t)
+    for (int t = 0; t < plan->panel_count; ++t) {
         plan->panels[t].placement[3] -= unused;
+        w->outside[t][1] -= unused, w->outside[t][2] -= unused;
+    }
     plan->sheets[0].height = ceil(1e9 - unused + 3 * w->options->margin + w->strip);
     return AX_OK;
 }
@@ -399,6 +430,9 @@ ax_status ax_find_pieces(ax_work* w, int* count, ax_error* error)
 ax_status ax_lay_out(ax_work* w, int pieces, ax_error* error)
 {
     ax_cut_plan* plan = w->plan;
+    w->outside = ax_alloc((size_t)plan->panel_count, sizeof *w->outside);
+    for (int t = 0; t < plan->panel_count; ++t)
+        w->outside[t][0] = w->outside[t][1] = w->outside[t][2] = NAN;
     bool stocked = w->options->sheet[0] > 0, loose_panels = !plan->joint->one_piece;
     // outlines must not meet in place once they have grown by the kerf; bare triangles without kerf may touch at their corners
     bool clear = !loose_panels || (!plan->joint->two_layers && ax_flat_clearance(w, plan->kerf) >= plan->kerf - 1e-9);

@@ -17,6 +17,8 @@ typedef struct ax_work {
     ax_cut_plan* plan;
     ax_plan_builder builder;
     int *sheet_start, *sheet_panels; // panels of sheet s: sheet_panels[sheet_start[s] .. sheet_start[s + 1])
+    int* seam;                       // number of the seam at each hinge, 0: none
+    double (*outside)[3];            // where names beside their panels stand: x, from, to; x NaN: none
     unsigned char* met;              // corners that a drawn opening has passed
     double strip;                    // mm, height kept for notes at the foot of a sheet
 } ax_work;
@@ -47,9 +49,20 @@ ax_status ax_prove_clearance(ax_work* w, const ax_progress* progress, ax_error* 
 ax_status ax_find_pieces(ax_work* w, int* count, ax_error* error);
 ax_status ax_lay_out(ax_work* w, int pieces, ax_error* error);
 
-// label.c: the name inside the panel, upright as in the flat state.
+// label.c: names inside panels, upright as in the flat state; what stands at corners; seams between pieces.
 void ax_choose_labels(ax_work* w);
 void ax_put_label(ax_work* w, int panel);
+void ax_put_neighbours(ax_work* w, int panel);
+void ax_number_seams(ax_work* w);
+void ax_put_seams(ax_work* w, int panel);
+// A name beside its panel: height that it takes, 0 if it is inside; least distance of two; drawing it at x between the heights
+// where the panel ends and the name begins.
+double ax_label_zone(const ax_work* w, int panel);
+double ax_label_pitch(void);
+void ax_put_label_outside(ax_work* w, int panel, double x, double from, double to);
+
+// overview.c: all panels in place with their names and sheets.
+void ax_draw_overview(ax_work* w);
 
 // note.c: check bar, legend and figures at the foot of a sheet. Measuring comes first, when the sheet's number is not yet known.
 #define AX_NOTE_BAR 100.0                              // mm
