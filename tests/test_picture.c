@@ -277,7 +277,7 @@ static ax_screen screen_with(const ax_mesh* mesh, double* values)
     return (ax_screen){.vertex_count = mesh->vertex_count, .curvature = values};
 }
 
-static image draw_screen(const ax_mesh* mesh, const ax_screen* screen, ax_field field)
+static image draw_screen(const ax_mesh* mesh, const ax_screen* screen, ax_screen_field field)
 {
     ax_error error = {0};
     if (ax_picture_screen(mesh, screen, field, 300, 200, path, &error) != AX_OK)
@@ -293,12 +293,12 @@ static void where_a_surface_dips_it_is_blue_and_hatched(void** state)
     ax_screen screen = screen_with(&mesh, values);
     for (int v = 0; v < mesh.vertex_count; ++v)
         values[v] = 0.1 + 1e-3 * mesh.positions[v][0];
-    image bulging = draw_screen(&mesh, &screen, AX_FIELD_CURVATURE);
+    image bulging = draw_screen(&mesh, &screen, AX_SCREEN_CURVATURE);
     assert_true(share(&bulging, is_orange) > 0.2);
     assert_true(share(&bulging, is_blue) == 0 && share(&bulging, is_ink) == 0);
     for (int v = 0; v < mesh.vertex_count; ++v) // weak, yet of the wrong sign on one half
         values[v] = mesh.positions[v][0] > 0 ? 0.1 : -1e-6;
-    image dipping = draw_screen(&mesh, &screen, AX_FIELD_CURVATURE);
+    image dipping = draw_screen(&mesh, &screen, AX_SCREEN_CURVATURE);
     assert_true(share(&dipping, is_blue) > 0.1 && share(&dipping, is_orange) > 0.1);
     assert_true(share(&dipping, is_ink) > 0.005);
     free(bulging.pixels), free(dipping.pixels);
@@ -324,7 +324,7 @@ static void a_request_that_cannot_be_met_says_why(void** state)
     ax_mesh mesh = shape_paraboloid(4, 0.3);
     double* values = AX_NEW0(double, mesh.vertex_count);
     ax_screen screen = screen_with(&mesh, values);
-    assert_int_equal(ax_picture_screen(&mesh, &screen, AX_FIELD_SCALE, 100, 100, path, &error), AX_BAD_INPUT);
+    assert_int_equal(ax_picture_screen(&mesh, &screen, AX_SCREEN_SCALE, 100, 100, path, &error), AX_BAD_INPUT);
     assert_non_null(strstr(error.message, "flatten"));
     ax_free(values);
     ax_mesh_free(&mesh);

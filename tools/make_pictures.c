@@ -31,7 +31,7 @@ static void draw_screen(const char* folder, const char* name, const ax_mesh* mes
     ax_screen screen;
     require(ax_target_screen(mesh, NULL, NULL, &screen, &error), &error);
     snprintf(path, sizeof path, "%s/%s-curvature.png", folder, name);
-    require(ax_picture_screen(mesh, &screen, AX_FIELD_CURVATURE, WIDTH, HEIGHT, path, &error), &error);
+    require(ax_picture_screen(mesh, &screen, AX_SCREEN_CURVATURE, WIDTH, HEIGHT, path, &error), &error);
     ax_screen_free(&screen);
 }
 

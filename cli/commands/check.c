@@ -102,11 +102,11 @@ static ax_status draw(const arguments* a, const ax_mesh* mesh, const ax_screen* 
     if (status == AX_OK)
         status = output_join(a->png, "curvature.png", path, sizeof path, error);
     if (status == AX_OK)
-        status = ax_picture_screen(mesh, screen, AX_FIELD_CURVATURE, 1600, 1200, path, error);
+        status = ax_picture_screen(mesh, screen, AX_SCREEN_CURVATURE, 1600, 1200, path, error);
     if (status == AX_OK)
         status = output_join(a->png, "scale.png", path, sizeof path, error);
     if (status == AX_OK && screen->scale)
-        status = ax_picture_screen(mesh, screen, AX_FIELD_SCALE, 1600, 1200, path, error);
+        status = ax_picture_screen(mesh, screen, AX_SCREEN_SCALE, 1600, 1200, path, error);
     return status;
 }
 

@@ -69,6 +69,8 @@ typedef struct ax_rim_part {
 } ax_rim_part;
 // Replaces all parts; a hinge belongs to at most one. AX_USAGE otherwise.
 ax_status ax_form_set_rim(ax_form* form, int count, const ax_rim_part* parts, ax_error* error);
+// Smallest mouth angle of the flat state, radians, 0 to pi/3: room for joints and the saw. Default 2 degrees.
+void ax_form_set_mouth_min(ax_form* form, double angle);
 // Border panels (with a rim hinge) may deviate from equilateral, within bounds. Default true.
 void ax_form_release_border(ax_form* form, bool released);
 
@@ -83,10 +85,10 @@ typedef struct ax_form_dynamics {
     ax_dynamics_kind kind;
     ax_load load;    // kind, direction, density or pressure, for reports and the exact stage: the shape does not depend on its size
     bool adapt;      // panel sizes may give way a little so that holes open fully within rim and constraints
-    double give;     // how easily they do, 0 (not at all) to 10; default 0.3
+    double give;     // how easily they do: 0 not at all, default 3, at most 100
     bool collisions; // the sheet may grow in the plane until no panels overlap
 } ax_form_dynamics;
-ax_form_dynamics ax_form_dynamics_default(void); // none, adapt, give 0.3, no collisions
+ax_form_dynamics ax_form_dynamics_default(void); // none, adapt, give 3, no collisions
 void ax_form_set_dynamics(ax_form* form, const ax_form_dynamics* dynamics);
 const ax_form_dynamics* ax_form_get_dynamics(const ax_form* form);
 
@@ -100,7 +102,7 @@ typedef enum ax_held_kind {
     AX_HELD_SURFACE,     // on `surface`
     AX_HELD_MIRROR,      // pairs (2 hinges each), mirrored in the plane `point`, `direction`; a hinge may pair with itself
     AX_HELD_ROTATION,    // orbits (`order` hinges each), about the axis `point`, `direction`
-    AX_HELD_FAIR,        // kagome lines run straight at these hinges
+    AX_HELD_FAIR,        // kagome lines through these hinges bend evenly
 } ax_held_kind;
 const char* ax_held_kind_name(ax_held_kind kind);
 
@@ -132,7 +134,7 @@ void ax_form_put_underlay(ax_form* form, const char* name, const ax_mesh* mesh, 
 
 // A visual update: so many projective iterations of every state. Keeps multipliers, so that the hand feels no jump.
 void ax_form_iterate(ax_form* form, int iterations);
-// Iterates until the residuals fall no further or `iterations` are done (0: the default, 300). AX_CANCELLED leaves the form as
+// Iterates until the states rest or `iterations` are done (0: 400, and up to five times that while edges are still off). AX_CANCELLED leaves the form as
 // it was before the call. What could not be met is in the report; the return is AX_OK all the same.
 ax_status ax_form_settle(ax_form* form, int iterations, const ax_progress* progress, ax_error* error);
 // Start of the deployed states: `height` out of plane (over the sheet's radius), a bowl or dome; forgets multipliers.
@@ -167,11 +169,15 @@ typedef struct ax_form_view {
 } ax_form_view;
 ax_form_view ax_form_look(ax_form* form);
 
+// The present states as a design of its own, exact or not, for pictures and exports; `loaded`: the loaded state takes the place of the
+// deployed one. Freed by ax_design_free.
+void ax_form_snapshot(ax_form* form, bool loaded, ax_design* design);
+
 int ax_form_rim(const ax_form* form, const ax_rim_part** parts);
 int ax_form_constraints(const ax_form* form, const ax_form_constraint** constraints);
 int ax_form_underlays(const ax_form* form, const char*** names, const ax_mesh** meshes, const double** clearances);
 
-typedef enum ax_severity { AX_NOTE, AX_WARNING, AX_FAILURE } ax_severity;
+typedef enum ax_severity { AX_SEVERITY_NOTE, AX_SEVERITY_WARNING, AX_SEVERITY_FAILURE } ax_severity;
 typedef struct ax_finding {
     ax_severity severity;
     const char* kind; // "mouth", "overlap", "slack", "tight", "overhang", "rim", "constraint", "scale", "clearance"
@@ -185,7 +191,7 @@ typedef struct ax_held_figure {
     const char* name;
     const char* kind;
     int count;
-    double residual;   // largest distance of a hinge from what holds it, document units; fairness: from straight
+    double residual;   // largest distance of a hinge from what holds it, document units; fairness: third differences
     double multiplier; // largest |u| over L: far above 1 tells of a conflict
 } ax_held_figure;
 

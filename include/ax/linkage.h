@@ -24,6 +24,10 @@ ax_linkage ax_linkage_copy(const ax_linkage* linkage);
 // (then it is on the rim) or two triangles, and every edge of a triangle, turned round, lies on exactly one hole or opening.
 ax_status ax_linkage_check(const ax_linkage* linkage, ax_error* error);
 
+// Rim hinges in their order round the shell, along each opening from its first to its last hinge; `order` holds hinge_count. Returns
+// their number.
+int ax_linkage_rim(const ax_linkage* linkage, int* order);
+
 // Largest magnitude of a panel's column and row, so that its name fits.
 #define AX_PANEL_LIMIT 10000000
 

@@ -11,8 +11,8 @@
 ax_status ax_picture_design(const ax_design* design, ax_state state, int width, int height, const char* path,
                             ax_error* error);
 
-typedef enum ax_field { AX_FIELD_CURVATURE, AX_FIELD_SCALE } ax_field;
+typedef enum ax_screen_field { AX_SCREEN_CURVATURE, AX_SCREEN_SCALE } ax_screen_field;
 // A picture of a screened target surface coloured by mean curvature (blue and hatched: H <= 0, orange: H > 0) or by lambda (hatched
 // outside 1 to 2), with legend. AX_BAD_INPUT when lambda is asked of a surface that was not flattened.
-ax_status ax_picture_screen(const ax_mesh* mesh, const ax_screen* screen, ax_field field, int width, int height,
+ax_status ax_picture_screen(const ax_mesh* mesh, const ax_screen* screen, ax_screen_field field, int width, int height,
                             const char* path, ax_error* error);

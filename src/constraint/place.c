@@ -470,7 +470,18 @@ static void place_nearest(const void* geometry, const double x[3], double out[3]
     ax_curve_nearest(geometry, x, out);
 }
 
+static double place_parameter(const void* geometry, const double x[3], double out[3])
+{
+    return ax_curve_nearest(geometry, x, out);
+}
+
+static void place_point(const void* geometry, double t, double out[3])
+{
+    ax_curve_point(geometry, t, out);
+}
+
 ax_place ax_curve_place(const ax_curve* curve)
 {
-    return (ax_place){place_nearest, curve};
+    double period = curve->kind == ELLIPSE ? 1 : (curve->closed ? curve->count : 0);
+    return (ax_place){place_nearest, curve, place_parameter, place_point, period};
 }

@@ -161,37 +161,6 @@ ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const 
     return status;
 }
 
-// Rim hinges in their order round the shell: along each opening from its first to its last hinge, openings joined end to start.
-static int rim_in_order(const ax_linkage* linkage, int* order)
-{
-    int n = linkage->hinge_count, count = 0;
-    int* next = AX_NEW(int, n);
-    memset(next, -1, (size_t)n * sizeof *next);
-    int first = -1;
-    for (int k = 0; k < linkage->opening_count; ++k) {
-        int a = linkage->opening_hinges[linkage->opening_start[k]];
-        next[a] = linkage->opening_hinges[linkage->opening_start[k + 1] - 1];
-    }
-    for (int t = 0; t < linkage->triangle_count; ++t) // a rim hinge and the next on the other side of a corner triangle
-        for (int k = 0; k < 3; ++k) {
-            int a = linkage->triangles[t][k], b = linkage->triangles[t][(k + 1) % 3];
-            if (linkage->on_rim[a] && linkage->on_rim[b]) {
-                if (next[b] < 0)
-                    next[b] = a;
-            }
-        }
-    for (int h = 0; h < n && first < 0; ++h)
-        if (linkage->on_rim[h])
-            first = h;
-    for (int h = first; h >= 0 && count < n; h = next[h]) {
-        order[count++] = h;
-        if (next[h] == first)
-            break;
-    }
-    ax_free(next);
-    return count;
-}
-
 ax_status ax_design_set_supports(ax_design* design, const char* words, ax_error* error)
 {
     const ax_linkage* linkage = &design->linkage;
@@ -199,7 +168,7 @@ ax_status ax_design_set_supports(ax_design* design, const char* words, ax_error*
     unsigned char* chosen = AX_NEW0(unsigned char, n);
     ax_status status = AX_OK;
     if (strcmp(words, "rim") == 0 || (sscanf(words, "rim/%d%n", &every, &used) == 1 && !words[used] && every >= 1)) {
-        int *order = AX_NEW(int, n), count = rim_in_order(linkage, order);
+        int *order = AX_NEW(int, n), count = ax_linkage_rim(linkage, order);
         for (int k = 0; k < count; k += every)
             chosen[order[k]] = 1;
         if (every == 1)

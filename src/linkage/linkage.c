@@ -119,6 +119,36 @@ ax_status ax_linkage_check(const ax_linkage* linkage, ax_error* error)
 
 // Rows count A, B, ... Z, AA, ... from row 0 up and -A, -B, ... from row -1 down; places within a row 1, 2, ... and -1, -2, ...
 // likewise. Names that were counted from the first row in use would change with every edit of the rim.
+int ax_linkage_rim(const ax_linkage* linkage, int* order)
+{
+    int n = linkage->hinge_count, count = 0;
+    int* next = AX_NEW(int, n);
+    memset(next, -1, (size_t)n * sizeof *next);
+    int first = -1;
+    for (int k = 0; k < linkage->opening_count; ++k) {
+        int a = linkage->opening_hinges[linkage->opening_start[k]];
+        next[a] = linkage->opening_hinges[linkage->opening_start[k + 1] - 1];
+    }
+    for (int t = 0; t < linkage->triangle_count; ++t) // a rim hinge and the next on the other side of a corner triangle
+        for (int k = 0; k < 3; ++k) {
+            int a = linkage->triangles[t][k], b = linkage->triangles[t][(k + 1) % 3];
+            if (linkage->on_rim[a] && linkage->on_rim[b]) {
+                if (next[b] < 0)
+                    next[b] = a;
+            }
+        }
+    for (int h = 0; h < n && first < 0; ++h)
+        if (linkage->on_rim[h])
+            first = h;
+    for (int h = first; h >= 0 && count < n; h = next[h]) {
+        order[count++] = h;
+        if (next[h] == first)
+            break;
+    }
+    ax_free(next);
+    return count;
+}
+
 void ax_panel_name(const ax_linkage* linkage, int triangle, char text[16])
 {
     assert(triangle >= 0 && triangle < linkage->triangle_count);

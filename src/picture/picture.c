@@ -362,14 +362,14 @@ ax_status ax_picture_design(const ax_design* design, ax_state state, int width, 
     return status;
 }
 
-ax_status ax_picture_screen(const ax_mesh* mesh, const ax_screen* screen, ax_field field, int width, int height,
+ax_status ax_picture_screen(const ax_mesh* mesh, const ax_screen* screen, ax_screen_field field, int width, int height,
                             const char* path, ax_error* error)
 {
     composition c = {0};
     ax_status status = make_sheet(width, height, &c.sheet, error);
     if (status != AX_OK)
         return status;
-    bool curvature = field == AX_FIELD_CURVATURE;
+    bool curvature = field == AX_SCREEN_CURVATURE;
     const double* values = curvature ? screen->curvature : screen->scale;
     if (!values)
         return ax_fail(error, AX_BAD_INPUT,

@@ -1,0 +1,687 @@
+#include "form/state.h"
+
+#include "base/vec.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEAST_TRIANGLES = 12, MOST_TRIANGLES = 2000000 };
+static const double standard_mouth = 2 * AX_PI / 180, standard_give = 3;
+
+const char* ax_held_kind_name(ax_held_kind kind)
+{
+    static const char* const names[] = {"plane", "plane given", "line",   "circle",   "curve",
+                                        "fixed", "surface",     "mirror", "rotation", "fairness"};
+    return names[kind];
+}
+
+ax_form_dynamics ax_form_dynamics_default(void)
+{
+    return (ax_form_dynamics){.kind = AX_DYNAMICS_NONE,
+                              .load = {.kind = AX_LOAD_NONE, .direction = {0, 0, -1}, .pressure = 100, .density = 4},
+                              .adapt = true,
+                              .give = standard_give};
+}
+
+// ---- copies -------------------------------------------------------------------------------------------------------------------
+
+static char* copy_text(const char* text)
+{
+    return ax_copy(text, strlen(text) + 1, 1);
+}
+
+static ax_curve_shape copy_shape(const ax_curve_shape* shape)
+{
+    ax_curve_shape copy = *shape;
+    copy.points = ax_copy(shape->points, (size_t)shape->count, sizeof *shape->points);
+    return copy;
+}
+
+ax_rim_part ax_rim_part_copy(const ax_rim_part* part)
+{
+    ax_rim_part copy = *part;
+    copy.hinges = ax_copy(part->hinges, (size_t)part->count, sizeof *part->hinges);
+    copy.places = part->kind == AX_RIM_FIXED ? ax_copy(part->places, (size_t)part->count, sizeof *part->places) : NULL;
+    copy.curve = part->kind == AX_RIM_SLIDE ? copy_shape(&part->curve) : (ax_curve_shape){0};
+    return copy;
+}
+
+void ax_rim_part_release(ax_rim_part* part)
+{
+    ax_free((void*)part->hinges);
+    ax_free((void*)part->places);
+    ax_free((void*)part->curve.points);
+}
+
+ax_form_constraint ax_form_constraint_copy(const ax_form_constraint* c)
+{
+    ax_form_constraint copy = *c;
+    copy.name = copy_text(c->name);
+    copy.hinges = ax_copy(c->hinges, (size_t)c->count, sizeof *c->hinges);
+    copy.places = c->kind == AX_HELD_FIXED ? ax_copy(c->places, (size_t)c->count, sizeof *c->places) : NULL;
+    copy.curve = c->kind == AX_HELD_CURVE ? copy_shape(&c->curve) : (ax_curve_shape){0};
+    copy.surface = NULL;
+    if (c->kind == AX_HELD_SURFACE) {
+        ax_mesh* mesh = AX_NEW(ax_mesh, 1);
+        *mesh = ax_mesh_copy(c->surface);
+        copy.surface = mesh;
+    }
+    return copy;
+}
+
+void ax_form_constraint_release(ax_form_constraint* c)
+{
+    ax_free((void*)c->name);
+    ax_free((void*)c->hinges);
+    ax_free((void*)c->places);
+    ax_free((void*)c->curve.points);
+    if (c->surface) {
+        ax_mesh_free((ax_mesh*)c->surface);
+        ax_free((void*)c->surface);
+    }
+}
+
+ax_curve* ax_curve_of_shape(const ax_curve_shape* s)
+{
+    switch (s->kind) {
+    case AX_CURVE_LINE:
+        return ax_curve_line(s->points[0], s->points[1]);
+    case AX_CURVE_CIRCLE:
+        return ax_curve_circle(s->points[0], s->points[1], s->points[2][0]);
+    case AX_CURVE_ELLIPSE:
+        return ax_curve_ellipse(s->points[0], s->points[1], s->points[2]);
+    case AX_CURVE_POLYLINE:
+        return ax_curve_polyline(s->points, s->count, s->closed);
+    default:
+        return ax_curve_spline(s->points, s->count, s->closed);
+    }
+}
+
+static ax_status check_shape(const ax_curve_shape* shape, ax_error* error)
+{
+    static const struct {
+        const char* name;
+        int least, most;
+    } wanted[] = {{"line", 2, 2}, {"circle", 3, 3}, {"ellipse", 3, 3}, {"polyline", 2, 100000}, {"spline", 2, 100000}};
+    int k = shape->kind;
+    if (shape->count < wanted[k].least || shape->count > wanted[k].most)
+        return ax_fail(error, AX_USAGE, "A %s needs %s%d points, %d are given.", wanted[k].name,
+                       wanted[k].most > wanted[k].least ? "at least " : "", wanted[k].least, shape->count);
+    for (int p = 0; p < shape->count; ++p)
+        for (int c = 0; c < 3; ++c)
+            if (!isfinite(shape->points[p][c]))
+                return ax_fail(error, AX_USAGE, "Point %d of the %s is no number.", p, wanted[k].name);
+    return AX_OK;
+}
+
+// ---- making -------------------------------------------------------------------------------------------------------------------
+
+// The smaller of the two angles at each inner hinge, seen where the linkage is half open.
+static void list_mouths(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    double* scale = AX_NEW(double, linkage->triangle_count);
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        scale[t] = 1.5;
+    double(*half)[2] = ax_alloc((size_t)linkage->hinge_count, sizeof *half);
+    ax_lattice_twist(&f->lattice, scale, half);
+    int count;
+    int(*all)[3] = ax_linkage_mouths(linkage, &count);
+    f->mouths = ax_alloc((size_t)count, sizeof *f->mouths);
+    f->mouth_count = 0;
+    for (int k = 0; k < count; ++k)
+        if (ax_mouth_angle(half[all[k][0]], half[all[k][1]], half[all[k][2]]) < 2 * AX_PI / 3) {
+            int* to = f->mouths[f->mouth_count++];
+            to[0] = all[k][1], to[1] = all[k][2], to[2] = all[k][0];
+        }
+    ax_free(all);
+    ax_free(half);
+    ax_free(scale);
+}
+
+// What follows hinge `h` on the kagome line that comes from `from`: corner k + 1 of one panel, the hinge, corner k + 1 of the other.
+// -1 at the rim.
+static int follow(const ax_linkage* linkage, const int (*holder)[2], int from, int h)
+{
+    if (linkage->on_rim[h])
+        return -1;
+    for (int side = 0; side < 2; ++side) {
+        const int *t = linkage->triangles[holder[h][side]], *u = linkage->triangles[holder[h][!side]];
+        int at = t[0] == h ? 0 : (t[1] == h ? 1 : 2), on = u[0] == h ? 0 : (u[1] == h ? 1 : 2);
+        for (int k = 1; k <= 2; ++k)
+            if (t[(at + k) % 3] == from)
+                return u[(on + k) % 3];
+    }
+    return -1;
+}
+
+// Four hinges in a row on every kagome line, once each.
+static void list_lines(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    f->holder = ax_linkage_hinge_triangles(linkage);
+    f->lines = ax_alloc(3 * (size_t)linkage->triangle_count, sizeof *f->lines);
+    f->bends = ax_alloc(3 * (size_t)linkage->triangle_count, sizeof *f->bends);
+    f->line_count = f->bend_count = 0;
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int k = 0; k < 3; ++k) { // an edge is the middle of one row
+            int b = linkage->triangles[t][k], c = linkage->triangles[t][(k + 1) % 3];
+            int a = follow(linkage, (const int(*)[2])f->holder, c, b), d = follow(linkage, (const int(*)[2])f->holder, b, c);
+            if (d >= 0) {
+                int* to = f->bends[f->bend_count++];
+                to[0] = b, to[1] = c, to[2] = d;
+            }
+            if (a < 0 || d < 0)
+                continue;
+            int* to = f->lines[f->line_count++];
+            to[0] = a, to[1] = b, to[2] = c, to[3] = d;
+        }
+}
+
+ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
+{
+    ax_form* f = AX_NEW0(ax_form, 1);
+    f->lattice = *lattice;
+    *lattice = (ax_lattice){0};
+    f->unit = unit;
+    const ax_linkage* linkage = &f->lattice.linkage;
+    size_t n = (size_t)linkage->hinge_count, t = (size_t)linkage->triangle_count;
+    f->prescribed = AX_NEW(double, t);
+    f->centres = ax_alloc(t, sizeof *f->centres);
+    f->flat = ax_alloc(n, sizeof *f->flat);
+    f->deployed = ax_alloc(n, sizeof *f->deployed);
+    f->simulated = ax_alloc(n, sizeof *f->simulated);
+    f->side = ax_alloc(t, sizeof *f->side);
+    f->realised = AX_NEW(double, t);
+    f->opening = AX_NEW(double, linkage->hole_count + 1);
+    f->material = AX_NEW0(double, n);
+    f->scratch = ax_alloc(2 * n, sizeof *f->scratch);
+    f->lanes = AX_NEW(double, 3 * t + 6 * (size_t)linkage->hole_count);
+    for (size_t k = 0; k < t; ++k) {
+        const int* h = linkage->triangles[k];
+        f->prescribed[k] = 1;
+        for (int c = 0; c < 2; ++c) {
+            f->centres[k][c] =
+                (f->lattice.hinges[h[0]][c] + f->lattice.hinges[h[1]][c] + f->lattice.hinges[h[2]][c]) / 3;
+            f->centre[c] += f->centres[k][c] / (double)t;
+        }
+        for (int c = 0; c < 3; ++c)
+            f->side[k][c] = 0.5 * f->lattice.spacing;
+    }
+    for (size_t k = 0; k < t; ++k)
+        f->radius = fmax(f->radius, ax_distance2(f->centres[k], f->centre));
+    f->holes = AX_NEW(int, linkage->hole_count + 1);
+    for (int k = 0; k < linkage->hole_count; ++k)
+        if (linkage->hole_start[k + 1] - linkage->hole_start[k] == 6)
+            f->holes[f->hole_count++] = k;
+    list_mouths(f);
+    list_lines(f);
+    f->mouth_min = standard_mouth;
+    f->released = true;
+    f->dynamics = ax_form_dynamics_default();
+    f->growth = 1;
+    f->pool = ax_pool_make(0);
+    f->stale = true;
+    return f;
+}
+
+void ax_form_free(ax_form* f)
+{
+    if (!f)
+        return;
+    ax_form_drop_solvers(f);
+    ax_pool_free(f->pool);
+    ax_lattice_free(&f->lattice);
+    for (int k = 0; k < f->rim_count; ++k)
+        ax_rim_part_release(f->rim + k);
+    for (int k = 0; k < f->held_count; ++k)
+        ax_form_constraint_release(f->held + k);
+    for (int k = 0; k < f->set_count; ++k) {
+        ax_free(f->sets[k].name);
+        ax_free(f->sets[k].hinges);
+    }
+    for (int k = 0; k < f->underlay_count; ++k) {
+        ax_free((void*)f->underlay_names[k]);
+        ax_mesh_free(f->underlays + k);
+    }
+    void* blocks[] = {f->centres,   f->mouths,         f->lines, f->bends, f->holder,      f->holes,   f->prescribed, f->rim,
+                      f->held,      f->sets,           f->underlays,  f->flat,    f->deployed,   f->simulated,
+                      f->side,      f->underlay_names, f->clearances, f->pending, f->realised,   f->opening,
+                      f->material,  f->scratch,        f->lanes};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+        ax_free(blocks[k]);
+    ax_free(f);
+}
+
+static double outline_area(const ax_form_start* start)
+{
+    double area = 0;
+    for (int k = 0; k < start->outline_count; ++k)
+        area += 0.5 * ax_cross2(start->outline[k], start->outline[(k + 1) % start->outline_count]);
+    return area;
+}
+
+ax_status ax_form_make(const ax_form_start* start, ax_form** out, ax_error* error)
+{
+    *out = NULL;
+    if (start->outline_count < 3)
+        return ax_fail(error, AX_USAGE, "An outline needs at least 3 points, %d are given.", start->outline_count);
+    double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
+    for (int k = 0; k < start->outline_count; ++k)
+        for (int c = 0; c < 2; ++c) {
+            if (!isfinite(start->outline[k][c]))
+                return ax_fail(error, AX_USAGE, "Point %d of the outline is no number.", k);
+            lo[c] = fmin(lo[c], start->outline[k][c]), hi[c] = fmax(hi[c], start->outline[k][c]);
+        }
+    double area = outline_area(start);
+    if (!(fabs(area) > 1e-12 * (hi[0] - lo[0]) * (hi[1] - lo[1])))
+        return ax_fail(error, AX_USAGE, "The outline encloses no area.");
+    if (!(start->scale >= 1 && start->scale <= 2))
+        return ax_fail(error, AX_USAGE, "The scale factor %g is outside 1 to 2.", start->scale);
+    double spacing = start->edge > 0 ? 2 * start->edge : sqrt(4 * fabs(area) / (sqrt(3) * fmax(start->triangles, 1)));
+    double expected = 4 * fabs(area) / (sqrt(3) * spacing * spacing);
+    if (!(expected >= 0.5 * LEAST_TRIANGLES && expected <= MOST_TRIANGLES))
+        return ax_fail(error, AX_USAGE, "This outline would hold about %.0f triangles; %d to %d can be handled.", expected,
+                       LEAST_TRIANGLES, MOST_TRIANGLES);
+
+    // counter-clockwise; a lattice point in the middle, so that symmetric outlines get symmetric linkages
+    int n = start->outline_count;
+    double(*points)[2] = ax_alloc((size_t)n, sizeof *points);
+    for (int k = 0; k < n; ++k)
+        memcpy(points[k], start->outline[area > 0 ? k : n - 1 - k], sizeof *points);
+    double middle[2] = {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1])};
+    ax_outline outline = {n, (const double(*)[2])points};
+    ax_lattice lattice;
+    ax_status status = AX_OK;
+    for (int round = 0;; ++round) {
+        status = ax_lattice_lay(&outline, spacing, start->angle, middle, start->inside, &lattice, error);
+        double share = status == AX_OK ? lattice.linkage.triangle_count / fmax(start->triangles, 1) : 1;
+        if (status != AX_OK || start->edge > 0 || round == 6 || fabs(share - 1) < 0.02)
+            break;
+        ax_lattice_free(&lattice);
+        spacing *= sqrt(share);
+    }
+    ax_free(points);
+    if (status != AX_OK)
+        return status;
+    ax_form* f = ax_form_over(&lattice, start->unit);
+    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t) {
+        f->prescribed[t] = start->scale;
+        for (int k = 0; k < 3; ++k)
+            f->side[t][k] = ax_form_side(f, t);
+    }
+    ax_form_twist(f);
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
+        for (int c = 0; c < 3; ++c)
+            f->deployed[h][c] =
+                c < 2 ? f->centre[c] + start->scale * (f->lattice.hinges[h][c] - f->centre[c]) : 0;
+    memcpy(f->simulated, f->deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
+    *out = f;
+    return AX_OK;
+}
+
+// Sheet of a linkage that is known by its panels' places in the lattice only.
+static void lay_by_panels(ax_lattice* lattice)
+{
+    const ax_linkage* linkage = &lattice->linkage;
+    double across[2] = {0.5, 0.5 * sqrt(3)};
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        const int* panel = linkage->panels[t];
+        double third = panel[2] ? 2.0 / 3 : 1.0 / 3;
+        double i = panel[0] + third, j = panel[1] + third;
+        double centre[2] = {lattice->spacing * (i + j * across[0]), lattice->spacing * j * across[1]};
+        // corners of up panels: right side, left side, base (ax_lattice_lay); of down panels the same turned round
+        for (int k = 0; k < 3; ++k) {
+            double angle = (30 + 120 * k + (panel[2] ? 60 : 0)) * AX_PI / 180;
+            double r = lattice->spacing / (2 * sqrt(3));
+            int h = linkage->triangles[t][k];
+            lattice->hinges[h][0] = centre[0] + r * cos(angle);
+            lattice->hinges[h][1] = centre[1] + r * sin(angle);
+        }
+    }
+}
+
+static int ascending(const void* a, const void* b)
+{
+    double x = *(const double*)a, y = *(const double*)b;
+    return (x > y) - (x < y);
+}
+
+ax_status ax_form_from_design(const ax_design* design, ax_form** out, ax_error* error)
+{
+    *out = NULL;
+    const ax_linkage* from = &design->linkage;
+    if (from->triangle_count < LEAST_TRIANGLES)
+        return ax_fail(error, AX_USAGE, "A design of %d triangles is too small.", from->triangle_count);
+    ax_lattice lattice = {.linkage = ax_linkage_copy(from), .hinges = ax_calloc((size_t)from->hinge_count, sizeof *lattice.hinges)};
+    // the spacing that the scale factors refer to: 2 L / lambda, the same for all but for the measuring of lambda
+    double* spacing = AX_NEW(double, from->triangle_count);
+    for (int t = 0; t < from->triangle_count; ++t) {
+        const int* h = from->triangles[t];
+        double sum = 0;
+        for (int k = 0; k < 3; ++k)
+            sum += ax_distance2(design->flat[h[k]], design->flat[h[(k + 1) % 3]]);
+        spacing[t] = 2 * sum / (3 * design->scale[t]);
+    }
+    qsort(spacing, (size_t)from->triangle_count, sizeof *spacing, ascending);
+    lattice.spacing = spacing[from->triangle_count / 2];
+    ax_free(spacing);
+    lay_by_panels(&lattice);
+    ax_form* f = ax_form_over(&lattice, design->unit);
+    size_t n = (size_t)from->hinge_count;
+    memcpy(f->flat, design->flat, n * sizeof *f->flat);
+    memcpy(f->deployed, design->deployed, n * sizeof *f->deployed);
+    memcpy(f->simulated, design->simulated ? design->simulated : design->deployed, n * sizeof *f->simulated);
+    f->mouth_min = design->mouth_min * AX_PI / 180;
+    f->released = design->border == AX_BORDER_RELEASED;
+    for (int t = 0; t < from->triangle_count; ++t) {
+        double mean = 0;
+        for (int k = 0; k < 3; ++k) {
+            const int* h = from->triangles[t];
+            f->side[t][k] = ax_distance2(f->flat[h[(k + 1) % 3]], f->flat[h[(k + 2) % 3]]);
+            mean += f->side[t][k] / 3;
+        }
+        f->prescribed[t] = ax_clamp(2 * mean / f->lattice.spacing, 1, 2);
+    }
+    // the rim stays where it is
+    int* rim = AX_NEW(int, n);
+    double(*places)[3] = ax_alloc(n, sizeof *places);
+    int count = 0;
+    for (int h = 0; h < from->hinge_count; ++h)
+        if (design->supports ? design->supports[h] : from->on_rim[h]) {
+            rim[count] = h;
+            memcpy(places[count++], design->deployed[h], sizeof *places);
+        }
+    ax_rim_part part = {.kind = AX_RIM_FIXED, .count = count, .hinges = rim, .places = (const double(*)[3])places};
+    ax_status status = count ? ax_form_set_rim(f, 1, &part, error) : AX_OK;
+    ax_free(rim);
+    ax_free(places);
+    f->dynamics.load = design->load;
+    f->dynamics.kind = design->load.kind == AX_LOAD_GRAVITY     ? AX_DYNAMICS_GRAVITY
+                       : design->load.kind == AX_LOAD_INFLATION ? AX_DYNAMICS_INFLATION
+                                                                : AX_DYNAMICS_EXPAND;
+    f->exact = f->settled = true;
+    *out = f;
+    return status;
+}
+
+// ---- what is asked ------------------------------------------------------------------------------------------------------------
+
+void ax_form_changed(ax_form* f, bool rebuild, bool forget)
+{
+    ++f->revision;
+    f->exact = f->settled = false;
+    if (forget) {
+        ax_free(f->pending);
+        f->pending = NULL;
+        if (f->shape)
+            ax_solver_reset_multipliers(f->shape);
+        if (f->hang)
+            ax_solver_reset_multipliers(f->hang);
+    }
+    f->stale = f->stale || rebuild;
+}
+
+void ax_form_prescribe(ax_form* f, const double* scale)
+{
+    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
+        f->prescribed[t] = ax_clamp(scale[t], 1, 2);
+    ax_form_changed(f, false, false);
+}
+
+void ax_form_set_mouth_min(ax_form* f, double angle)
+{
+    f->mouth_min = ax_clamp(angle, 0, AX_PI / 3);
+    ax_form_changed(f, true, true);
+}
+
+typedef struct ranked {
+    int rank, hinge;
+} ranked;
+
+static int by_rank(const void* a, const void* b)
+{
+    const ranked *x = a, *y = b;
+    return x->rank != y->rank ? x->rank - y->rank : x->hinge - y->hinge;
+}
+
+// Brings the hinges of a part that slides into their order round the rim; a part of the rim starts after its longest gap.
+static void order_part(const ax_linkage* linkage, ax_rim_part* part)
+{
+    int *order = AX_NEW(int, linkage->hinge_count), count = ax_linkage_rim(linkage, order);
+    int* rank = AX_NEW(int, linkage->hinge_count);
+    for (int h = 0; h < linkage->hinge_count; ++h)
+        rank[h] = count;
+    for (int k = 0; k < count; ++k)
+        rank[order[k]] = k;
+    ranked* sorted = AX_NEW(ranked, part->count + 1);
+    for (int k = 0; k < part->count; ++k)
+        sorted[k] = (ranked){rank[part->hinges[k]], part->hinges[k]};
+    qsort(sorted, (size_t)part->count, sizeof *sorted, by_rank);
+    int first = 0, widest = -1;
+    for (int k = 0; k < part->count; ++k) {
+        int gap = k ? sorted[k].rank - sorted[k - 1].rank : sorted[0].rank + count - sorted[part->count - 1].rank;
+        if (gap > widest)
+            widest = gap, first = k;
+    }
+    for (int k = 0; k < part->count; ++k)
+        ((int*)part->hinges)[k] = sorted[(first + k) % part->count].hinge;
+    ax_free(sorted);
+    ax_free(rank);
+    ax_free(order);
+}
+
+ax_status ax_form_set_rim(ax_form* f, int count, const ax_rim_part* parts, ax_error* error)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    unsigned char* taken = AX_NEW0(unsigned char, linkage->hinge_count);
+    ax_status status = AX_OK;
+    for (int k = 0; k < count && status == AX_OK; ++k) {
+        if (parts[k].kind == AX_RIM_SLIDE)
+            status = check_shape(&parts[k].curve, error);
+        for (int i = 0; i < parts[k].count && status == AX_OK; ++i) {
+            int h = parts[k].hinges[i];
+            if (h < 0 || h >= linkage->hinge_count)
+                status = ax_fail(error, AX_USAGE, "There is no hinge %d: the design has hinges 0 to %d.", h,
+                                 linkage->hinge_count - 1);
+            else if (taken[h]++)
+                status = ax_fail(error, AX_USAGE, "Hinge %d is in two parts of the boundary.", h);
+        }
+    }
+    ax_free(taken);
+    if (status != AX_OK)
+        return status;
+    ax_rim_part* copies = AX_NEW0(ax_rim_part, count + 1);
+    for (int k = 0; k < count; ++k) {
+        copies[k] = ax_rim_part_copy(parts + k);
+        if (copies[k].kind == AX_RIM_SLIDE)
+            order_part(linkage, copies + k);
+    }
+    for (int k = 0; k < f->rim_count; ++k)
+        ax_rim_part_release(f->rim + k);
+    ax_free(f->rim);
+    f->rim = copies;
+    f->rim_count = count;
+    ax_form_changed(f, true, true);
+    return AX_OK;
+}
+
+void ax_form_release_border(ax_form* f, bool released)
+{
+    if (f->released == released)
+        return;
+    f->released = released;
+    ax_form_changed(f, true, true);
+}
+
+// Mean height of the deployed hinges above the rim's.
+static double bulge(const ax_form* f, double* level)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    double middle = 0;
+    int rim = 0;
+    *level = 0;
+    for (int h = 0; h < linkage->hinge_count; ++h) {
+        middle += f->deployed[h][2] / linkage->hinge_count;
+        if (linkage->on_rim[h])
+            *level += f->deployed[h][2], ++rim;
+    }
+    *level /= rim;
+    return middle - *level;
+}
+
+double ax_form_bulge(const ax_form* f)
+{
+    double level;
+    return bulge(f, &level);
+}
+
+// A sheet that bulges against its load would have to snap through: it is mirrored in the level of its rim. Its panels do not mind.
+static void face_load(ax_form* f)
+{
+    if (!ax_form_hangs(f))
+        return;
+    const ax_linkage* linkage = &f->lattice.linkage;
+    double towards = f->dynamics.kind == AX_DYNAMICS_GRAVITY ? f->dynamics.load.direction[2] : 1, level;
+    if (bulge(f, &level) * towards >= 0)
+        return;
+    for (int h = 0; h < linkage->hinge_count; ++h)
+        f->deployed[h][2] = 2 * level - f->deployed[h][2], f->simulated[h][2] = 2 * level - f->simulated[h][2];
+}
+
+void ax_form_set_dynamics(ax_form* f, const ax_form_dynamics* dynamics)
+{
+    bool kind = f->dynamics.kind != dynamics->kind || f->dynamics.adapt != dynamics->adapt;
+    bool load = memcmp(f->dynamics.load.direction, dynamics->load.direction, sizeof dynamics->load.direction) != 0;
+    // what was hung under one load is the best start for the next, and the open state for the first one
+    if (kind && !ax_form_hangs(f))
+        memcpy(f->simulated, f->deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
+    else if (kind && dynamics->kind == AX_DYNAMICS_EXPAND && !ax_form_shares(f))
+        memcpy(f->deployed, f->simulated, (size_t)f->lattice.linkage.hinge_count * sizeof *f->deployed);
+    f->dynamics = *dynamics;
+    if (kind || load)
+        face_load(f);
+    f->growth = dynamics->collisions ? f->growth : 1;
+    ax_form_changed(f, kind || load, kind || load);
+}
+
+const ax_form_dynamics* ax_form_get_dynamics(const ax_form* f)
+{
+    return &f->dynamics;
+}
+
+static ax_status check_constraint(const ax_form* f, const ax_form_constraint* c, ax_error* error)
+{
+    if (!c->name || !*c->name || strlen(c->name) > 63)
+        return ax_fail(error, AX_USAGE, "A constraint needs a name of 1 to 63 letters.");
+    if (!(c->weight > 0 && c->weight <= 1e6))
+        return ax_fail(error, AX_USAGE, "The weight %g of constraint '%s' is outside 0 to 1e6.", c->weight, c->name);
+    static const int least[] = {4, 1, 3, 4, 1, 1, 1, 2, 2, 1};
+    if (c->count < least[c->kind])
+        return ax_fail(error, AX_USAGE, "Constraint '%s' (%s) needs at least %d hinges, %d are selected.", c->name,
+                       ax_held_kind_name(c->kind), least[c->kind], c->count);
+    for (int i = 0; i < c->count; ++i)
+        if (c->hinges[i] < 0 || c->hinges[i] >= f->lattice.linkage.hinge_count)
+            return ax_fail(error, AX_USAGE, "Constraint '%s' names hinge %d; the design has hinges 0 to %d.", c->name,
+                           c->hinges[i], f->lattice.linkage.hinge_count - 1);
+    int each = c->kind == AX_HELD_MIRROR ? 2 : (c->kind == AX_HELD_ROTATION ? c->order : 1);
+    if (each < 1 || each > AX_MOST_POINTS || c->count % each)
+        return ax_fail(error, AX_USAGE, "Constraint '%s' has %d hinges, no multiple of its order %d.", c->name, c->count, each);
+    return c->kind == AX_HELD_CURVE ? check_shape(&c->curve, error) : AX_OK;
+}
+
+ax_status ax_form_put_constraint(ax_form* f, const ax_form_constraint* constraint, ax_error* error)
+{
+    ax_status status = check_constraint(f, constraint, error);
+    if (status != AX_OK)
+        return status;
+    ax_form_constraint copy = ax_form_constraint_copy(constraint);
+    int at = 0;
+    while (at < f->held_count && strcmp(f->held[at].name, constraint->name) != 0)
+        ++at;
+    if (at == f->held_count)
+        f->held = ax_realloc(f->held, (size_t)++f->held_count, sizeof *f->held);
+    else
+        ax_form_constraint_release(f->held + at);
+    f->held[at] = copy;
+    ax_form_changed(f, true, true);
+    return AX_OK;
+}
+
+bool ax_form_drop_constraint(ax_form* f, const char* name)
+{
+    for (int k = 0; k < f->held_count; ++k)
+        if (strcmp(f->held[k].name, name) == 0) {
+            ax_form_drop_solvers(f);
+            ax_form_constraint_release(f->held + k);
+            memmove(f->held + k, f->held + k + 1, (size_t)(--f->held_count - k) * sizeof *f->held);
+            ax_form_changed(f, true, true);
+            return true;
+        }
+    return false;
+}
+
+void ax_form_name_selection(ax_form* f, const char* name, int count, const int* hinges)
+{
+    int at = 0;
+    while (at < f->set_count && strcmp(f->sets[at].name, name) != 0)
+        ++at;
+    if (at == f->set_count) {
+        f->sets = ax_realloc(f->sets, (size_t)++f->set_count, sizeof *f->sets);
+        f->sets[at].name = copy_text(name);
+    } else
+        ax_free(f->sets[at].hinges);
+    f->sets[at].count = count;
+    f->sets[at].hinges = ax_copy(hinges, (size_t)count, sizeof *hinges);
+    ++f->revision;
+}
+
+const int* ax_form_selection(const ax_form* f, const char* name, int* count)
+{
+    for (int k = 0; k < f->set_count; ++k)
+        if (strcmp(f->sets[k].name, name) == 0) {
+            *count = f->sets[k].count;
+            return f->sets[k].hinges;
+        }
+    return NULL;
+}
+
+void ax_form_put_underlay(ax_form* f, const char* name, const ax_mesh* mesh, double clearance)
+{
+    int at = 0;
+    while (at < f->underlay_count && strcmp(f->underlay_names[at], name) != 0)
+        ++at;
+    if (at == f->underlay_count) {
+        size_t count = (size_t)++f->underlay_count;
+        f->underlay_names = ax_realloc((void*)f->underlay_names, count, sizeof *f->underlay_names);
+        f->underlays = ax_realloc(f->underlays, count, sizeof *f->underlays);
+        f->clearances = ax_realloc(f->clearances, count, sizeof *f->clearances);
+        f->underlay_names[at] = copy_text(name);
+    } else
+        ax_mesh_free(f->underlays + at);
+    f->underlays[at] = ax_mesh_copy(mesh);
+    f->clearances[at] = clearance;
+    ++f->revision;
+}
+
+int ax_form_rim(const ax_form* f, const ax_rim_part** parts)
+{
+    *parts = f->rim;
+    return f->rim_count;
+}
+
+int ax_form_constraints(const ax_form* f, const ax_form_constraint** constraints)
+{
+    *constraints = f->held;
+    return f->held_count;
+}
+
+int ax_form_underlays(const ax_form* f, const char*** names, const ax_mesh** meshes, const double** clearances)
+{
+    *names = f->underlay_names;
+    *meshes = f->underlays;
+    *clearances = f->clearances;
+    return f->underlay_count;
+}

@@ -1,0 +1,556 @@
+// What came of what was asked: measured on the states alone.
+#include "form/state.h"
+
+#include "analysis/measure.h"
+#include "base/vec.h"
+#include "constraint/cyclic.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Limits of what a settled form keeps, and above which people are told.
+static const double settled_error = 1e-2, overlap_depth = 1e-6, slack_opening = 0.95, tight_multiplier = 2, rim_gap = 0.02,
+                    scale_gap = 0.1;
+
+double ax_form_sides_mean(const ax_form* f)
+{
+    double sum = 0;
+    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
+        sum += f->side[t][0] + f->side[t][1] + f->side[t][2];
+    return sum / (3.0 * f->lattice.linkage.triangle_count);
+}
+
+// Corners of edge k of a panel.
+static void edge_of(const ax_form* f, int t, int k, int* a, int* b)
+{
+    *a = f->lattice.linkage.triangles[t][(k + 1) % 3];
+    *b = f->lattice.linkage.triangles[t][(k + 2) % 3];
+}
+
+double ax_form_flat_error(const ax_form* f)
+{
+    double most = 0;
+    bool shares = ax_form_shares(f);
+    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
+        for (int k = 0, a, b; k < 3; ++k) {
+            edge_of(f, t, k, &a, &b);
+            double is = ax_distance2(f->flat[a], f->flat[b]);
+            double asked = shares ? 0.5 * (is + ax_distance3(f->deployed[a], f->deployed[b])) : ax_form_side(f, t);
+            most = fmax(most, fabs(is / asked - 1));
+        }
+    return most;
+}
+
+double ax_form_deployed_error(const ax_form* f)
+{
+    double most = 0;
+    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
+        for (int k = 0, a, b; k < 3; ++k) {
+            edge_of(f, t, k, &a, &b);
+            double flat = ax_distance2(f->flat[a], f->flat[b]);
+            most = fmax(most, fabs(ax_distance3(f->deployed[a], f->deployed[b]) / flat - 1));
+        }
+    return most;
+}
+
+double ax_form_simulated_error(const ax_form* f)
+{
+    double most = 0;
+    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
+        for (int k = 0, a, b; k < 3; ++k) {
+            edge_of(f, t, k, &a, &b);
+            most = fmax(most, fabs(ax_distance3(f->simulated[a], f->simulated[b]) / f->side[t][k] - 1));
+        }
+    return most;
+}
+
+static void panel_normal(const ax_form* f, int t, const double (*x)[3], double normal[3])
+{
+    const int* h = f->lattice.linkage.triangles[t];
+    double a[3], b[3];
+    ax_sub3(x[h[1]], x[h[0]], a);
+    ax_sub3(x[h[2]], x[h[0]], b);
+    ax_cross(a, b, normal);
+}
+
+int ax_form_folds(const ax_form* f, const double (*x)[3])
+{
+    int folds = 0;
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h) {
+        if (f->holder[h][1] < 0)
+            continue;
+        double a[3], b[3];
+        panel_normal(f, f->holder[h][0], x, a);
+        panel_normal(f, f->holder[h][1], x, b);
+        folds += ax_dot3(a, b) < 0;
+    }
+    return folds;
+}
+
+// Area of each hole over that of the cyclic polygon with its sides; 1 where the sides reach no polygon.
+static void measure_opening(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
+    for (int k = 0; k < linkage->hole_count; ++k) {
+        const int* h = linkage->hole_hinges + linkage->hole_start[k];
+        int n = linkage->hole_start[k + 1] - linkage->hole_start[k];
+        f->opening[k] = 1;
+        if (n < 3 || n > AX_CYCLIC_MOST)
+            continue;
+        double side[AX_CYCLIC_MOST], corner[AX_CYCLIC_MOST][2], most = 0, normal[3] = {0};
+        for (int i = 0; i < n; ++i)
+            side[i] = ax_distance3(x[h[i]], x[h[(i + 1) % n]]);
+        ax_cyclic_inscribe(n, side, corner);
+        for (int i = 0; i < n; ++i) {
+            most += 0.5 * ax_cross2(corner[i], corner[(i + 1) % n]);
+            double a[3], b[3], c[3];
+            ax_sub3(x[h[i]], x[h[0]], a);
+            ax_sub3(x[h[(i + 1) % n]], x[h[0]], b);
+            ax_cross(a, b, c);
+            for (int d = 0; d < 3; ++d)
+                normal[d] += 0.5 * c[d];
+        }
+        f->opening[k] = most > 0 ? ax_norm3(normal) / most : 1;
+    }
+}
+
+static void measure_material(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    double mean = ax_form_sides_mean(f);
+    memset(f->material, 0, (size_t)linkage->hinge_count * sizeof *f->material);
+    ax_solver* s = ax_form_hangs(f) ? f->hang : f->shape;
+    const ax_form_groups* g = ax_form_hangs(f) ? &f->hang_groups : &f->shape_groups;
+    if (f->stale || !s)
+        return;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double u = ax_solver_multiplier(s, g->panels, t) / mean;
+        for (int k = 0; k < 3; ++k)
+            f->material[linkage->triangles[t][k]] = fmax(f->material[linkage->triangles[t][k]], u);
+    }
+}
+
+ax_form_view ax_form_look(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    ax_measure_scale(linkage, (const double(*)[2])f->flat, f->realised);
+    measure_opening(f);
+    measure_material(f);
+    return (ax_form_view){.linkage = linkage,
+                          .unit = f->unit,
+                          .spacing = f->lattice.spacing,
+                          .sheet = (const double(*)[2])f->lattice.hinges,
+                          .prescribed = f->prescribed,
+                          .realised = f->realised,
+                          .flat = (const double(*)[2])f->flat,
+                          .deployed = (const double(*)[3])f->deployed,
+                          .simulated = ax_form_hangs(f) ? (const double(*)[3])f->simulated : NULL,
+                          .opening = f->opening,
+                          .material = f->material,
+                          .revision = f->revision};
+}
+
+// ---- what holds -----------------------------------------------------------------------------------------------------------------
+
+// Largest distance of hinges from the plane, line or circle that fits them best: the constraint's own projection.
+static double fit_distance(const ax_form* f, const char* name, int count, const int* hinges, const double (*x)[3])
+{
+    (void)f;
+    const ax_constraint_type* type = ax_constraint_find(name);
+    ax_lane3 *y = ax_alloc_aligned((size_t)count, sizeof *y), *p = ax_alloc_aligned((size_t)count, sizeof *p);
+    double mean[3] = {0}, most = 0;
+    for (int i = 0; i < count; ++i)
+        for (int c = 0; c < 3; ++c)
+            mean[c] += x[hinges[i]][c] / count;
+    for (int i = 0; i < count; ++i)
+        for (int c = 0; c < 3; ++c)
+            for (int l = 0; l < AX_W; ++l)
+                y[i][c][l] = x[hinges[i]][c] - mean[c];
+    type->project(NULL, NULL, count, (const ax_lane3*)y, p);
+    for (int i = 0; i < count; ++i) {
+        double d[3];
+        for (int c = 0; c < 3; ++c)
+            d[c] = y[i][c][0] - p[i][c][0];
+        most = fmax(most, ax_norm3(d));
+    }
+    ax_free(y);
+    ax_free(p);
+    return most;
+}
+
+static double plane_distance(const ax_form_constraint* c, const double x[3])
+{
+    double d[3];
+    ax_sub3(x, c->point, d);
+    double length = ax_norm3(c->direction);
+    return length > 0 ? ax_dot3(d, c->direction) / length : d[2];
+}
+
+static double constraint_residual(const ax_form* f, int k, const double (*x)[3])
+{
+    const ax_form_constraint* c = f->held + k;
+    double most = 0;
+    switch (c->kind) {
+    case AX_HELD_PLANE:
+        return fit_distance(f, "plane", c->count, c->hinges, x);
+    case AX_HELD_LINE:
+        return fit_distance(f, "line", c->count, c->hinges, x);
+    case AX_HELD_CIRCLE:
+        return fit_distance(f, "circle", c->count, c->hinges, x);
+    case AX_HELD_PLANE_GIVEN:
+        for (int i = 0; i < c->count; ++i)
+            most = fmax(most, fabs(plane_distance(c, x[c->hinges[i]])));
+        return most;
+    case AX_HELD_CURVE:
+    case AX_HELD_SURFACE: {
+        ax_curve* curve = c->kind == AX_HELD_CURVE ? ax_curve_of_shape(&c->curve) : NULL;
+        ax_closest* surface = curve ? NULL : ax_closest_make(c->surface);
+        for (int i = 0; i < c->count; ++i) {
+            double on[3];
+            if (curve)
+                ax_curve_nearest(curve, x[c->hinges[i]], on);
+            else {
+                ax_closest_point at = ax_closest_find(surface, x[c->hinges[i]], -1);
+                memcpy(on, at.point, sizeof on);
+            }
+            most = fmax(most, ax_distance3(on, x[c->hinges[i]]));
+        }
+        ax_curve_free(curve);
+        ax_closest_free(surface);
+        return most;
+    }
+    case AX_HELD_FIXED:
+        for (int i = 0; i < c->count; ++i)
+            most = fmax(most, ax_distance3(c->places[i], x[c->hinges[i]]));
+        return most;
+    case AX_HELD_MIRROR:
+        for (int i = 0; i + 1 < c->count; i += 2) {
+            const double* a = x[c->hinges[i]];
+            double length = ax_norm3(c->direction), height = plane_distance(c, a), image[3];
+            for (int d = 0; d < 3; ++d)
+                image[d] = a[d] - 2 * height * (length > 0 ? c->direction[d] / length : d == 2);
+            most = fmax(most, ax_distance3(image, x[c->hinges[i + 1]]));
+        }
+        return most;
+    case AX_HELD_ROTATION: {
+        double length = ax_norm3(c->direction), w[3];
+        for (int d = 0; d < 3; ++d)
+            w[d] = length > 0 ? c->direction[d] / length : d == 2;
+        double cosine = cos(2 * AX_PI / c->order), sine = sin(2 * AX_PI / c->order);
+        for (int i = 0; i < c->count; ++i) {
+            int next = i / c->order * c->order + (i + 1) % c->order;
+            double a[3], across[3], image[3];
+            ax_sub3(x[c->hinges[i]], c->point, a);
+            ax_cross(w, a, across);
+            double along = ax_dot3(a, w);
+            for (int d = 0; d < 3; ++d) // Rodrigues
+                image[d] = c->point[d] + cosine * a[d] + sine * across[d] + (1 - cosine) * along * w[d];
+            most = fmax(most, ax_distance3(image, x[c->hinges[next]]));
+        }
+        return most;
+    }
+    case AX_HELD_FAIR: {
+        unsigned char* wanted = AX_NEW0(unsigned char, f->lattice.linkage.hinge_count);
+        for (int i = 0; i < c->count; ++i)
+            wanted[c->hinges[i]] = 1;
+        for (int i = 0; i < f->line_count; ++i)
+            if (wanted[f->lines[i][1]] && wanted[f->lines[i][2]]) {
+                const int* h = f->lines[i];
+                double d[3];
+                for (int q = 0; q < 3; ++q)
+                    d[q] = x[h[0]][q] - 3 * x[h[1]][q] + 3 * x[h[2]][q] - x[h[3]][q];
+                most = fmax(most, ax_norm3(d));
+            }
+        ax_free(wanted);
+        return most;
+    }
+    }
+    return most;
+}
+
+static double rim_residual(const ax_form* f, int k, const double (*x)[3])
+{
+    const ax_rim_part* part = f->rim + k;
+    double most = 0;
+    ax_curve* curve = part->kind == AX_RIM_SLIDE ? ax_curve_of_shape(&part->curve) : NULL;
+    for (int i = 0; i < part->count && part->kind != AX_RIM_FREE; ++i) {
+        double on[3];
+        if (curve)
+            ax_curve_nearest(curve, x[part->hinges[i]], on);
+        else
+            memcpy(on, part->places[i], sizeof on);
+        most = fmax(most, ax_distance3(on, x[part->hinges[i]]));
+    }
+    ax_curve_free(curve);
+    return most;
+}
+
+static double largest_multiplier(const ax_solver* s, int group, int count)
+{
+    double most = 0;
+    for (int c = 0; s && group >= 0 && c < count; ++c)
+        most = fmax(most, ax_solver_multiplier(s, group, c));
+    return most;
+}
+
+// Number of constraints in the solver's group of a held kind on `count` hinges.
+static int group_size(const ax_form_constraint* c)
+{
+    switch (c->kind) {
+    case AX_HELD_PLANE:
+    case AX_HELD_LINE:
+    case AX_HELD_CIRCLE:
+        return 1;
+    case AX_HELD_MIRROR:
+        return c->count / 2;
+    case AX_HELD_ROTATION:
+        return c->count / c->order;
+    case AX_HELD_FAIR:
+        return 0; // soft
+    default:
+        return c->count;
+    }
+}
+
+static void measure_held(ax_form* f, ax_form_report* r)
+{
+    static const char* const rim_names[] = {"free", "fixed", "slide"};
+    bool hangs = ax_form_hangs(f), ready = !f->stale;
+    const ax_solver* s = ready ? (hangs ? f->hang : f->shape) : NULL;
+    const ax_form_groups* g = hangs ? &f->hang_groups : &f->shape_groups;
+    const double(*x)[3] = (const double(*)[3])(hangs ? f->simulated : f->deployed);
+    double mean = r->edge;
+    r->held = AX_NEW0(ax_held_figure, f->rim_count + f->held_count + 1);
+    for (int k = 0; k < f->rim_count; ++k) {
+        if (f->rim[k].kind == AX_RIM_FREE)
+            continue;
+        ax_held_figure* to = r->held + r->held_count++;
+        *to = (ax_held_figure){.name = "boundary", .kind = rim_names[f->rim[k].kind], .count = f->rim[k].count};
+        to->residual = rim_residual(f, k, x);
+        to->multiplier =
+            s ? largest_multiplier(s, g->rim[k], f->rim[k].kind == AX_RIM_FIXED ? f->rim[k].count : 1) / mean : 0;
+    }
+    for (int k = 0; k < f->held_count; ++k) {
+        const ax_form_constraint* c = f->held + k;
+        // what is no support shapes the open state only
+        bool here = !hangs || c->support;
+        const double(*at)[3] = (const double(*)[3])(here ? x : (const double(*)[3])f->deployed);
+        const ax_solver* holder = ready ? (here && hangs ? f->hang : f->shape) : NULL;
+        const ax_form_groups* groups = here && hangs ? &f->hang_groups : &f->shape_groups;
+        ax_held_figure* to = r->held + r->held_count++;
+        *to = (ax_held_figure){.name = c->name, .kind = ax_held_kind_name(c->kind), .count = c->count};
+        to->residual = constraint_residual(f, k, at);
+        to->multiplier = holder && groups->held ? largest_multiplier(holder, groups->held[k], group_size(c)) / mean : 0;
+    }
+}
+
+// ---- findings -------------------------------------------------------------------------------------------------------------------
+
+static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kind, double value, double limit,
+                        const char* format, ...) __attribute__((format(printf, 6, 7)));
+static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kind, double value, double limit,
+                        const char* format, ...)
+{
+    r->findings = ax_realloc(r->findings, (size_t)r->finding_count + 1, sizeof *r->findings);
+    ax_finding* finding = r->findings + r->finding_count++;
+    *finding = (ax_finding){.severity = severity, .kind = kind, .triangle = -1, .hinge = -1, .value = value, .limit = limit};
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(finding->text, sizeof finding->text, format, arguments);
+    va_end(arguments);
+    return finding;
+}
+
+static int by_severity(const void* a, const void* b)
+{
+    const ax_finding *x = a, *y = b;
+    return x->severity != y->severity ? (int)y->severity - (int)x->severity : strcmp(x->kind, y->kind);
+}
+
+// Normals that look down, and the curvature that the painted factors sum to. Curvature of the metric lambda^2: minus the Laplacian
+// of ln lambda, summed over the panels within a radius of each panel's place: a surface that carries more than 2 pi turns over.
+static void measure_overhang(const ax_form* f, ax_form_report* r)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
+    int down = 0;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double normal[3];
+        panel_normal(f, t, x, normal);
+        down += normal[2] < 0;
+    }
+    r->overhang = down / (double)linkage->triangle_count;
+
+    // Gauss-Bonnet over discs about the sheet's middle: 2 pi (1 - mean of (1 + r d ln lambda / dr)); discs elsewhere by the same rule
+    // from the panels' neighbours. Panels exchange half the difference of ln lambda times sqrt 3 across each hinge.
+    double* curvature = AX_NEW0(double, linkage->triangle_count);
+    for (int h = 0; h < linkage->hinge_count; ++h) {
+        int a = f->holder[h][0], b = f->holder[h][1];
+        if (b < 0)
+            continue;
+        double flow = sqrt(3) * (log(f->prescribed[a]) - log(f->prescribed[b]));
+        curvature[a] += flow, curvature[b] -= flow;
+    }
+    enum { RADII = 12 };
+    double ring[RADII] = {0};
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        int at = (int)(RADII * ax_distance2(f->centres[t], f->centre) / f->radius);
+        ring[at < RADII ? at : RADII - 1] += curvature[t];
+    }
+    r->curvature_max = 0;
+    for (int k = 0, last = RADII - 1; k < last; ++k) { // the border's panels lack neighbours
+        ring[k] += k ? ring[k - 1] : 0;
+        r->curvature_max = fmax(r->curvature_max, ring[k]);
+    }
+    ax_free(curvature);
+}
+
+static void find_problems(ax_form* f, ax_form_report* r)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    double degree = 180 / AX_PI;
+    const char* unit = ax_unit_name(f->unit);
+    bool moved = f->dynamics.kind != AX_DYNAMICS_NONE;
+    double worst = fmax(r->flat_error, moved ? fmax(r->deployed_error, ax_form_hangs(f) ? r->simulated_error : 0) : 0);
+    if (worst > settled_error)
+        tell(r, AX_SEVERITY_FAILURE, "unsettled", worst, settled_error, "Edges are off by %.2g %%: %s.", 100 * worst,
+             f->iterations ? "the request cannot be met, or needs more steps" : "not solved yet");
+    if (r->overlap_pairs) {
+        int pair[1][2] = {{-1, -1}};
+        ax_measure_overlaps(linkage, (const double(*)[2])f->flat, overlap_depth * r->edge, 1, pair);
+        char a[16], b[16];
+        ax_panel_name(linkage, pair[0][0], a);
+        ax_panel_name(linkage, pair[0][1], b);
+        tell(r, AX_SEVERITY_FAILURE, "overlap", r->overlap_pairs, 0, "%d pairs of panels overlap in the flat state, %s and %s first.",
+             r->overlap_pairs, a, b)
+            ->triangle = pair[0][0];
+    }
+    if (r->flipped)
+        tell(r, AX_SEVERITY_FAILURE, "flipped", r->flipped, 0, "%d panels are turned over in the flat state.", r->flipped);
+    if (r->mouth_min < f->mouth_min - 0.1 / degree)
+        tell(r, r->mouth_min < 0 ? AX_SEVERITY_FAILURE : AX_SEVERITY_WARNING, "mouth", r->mouth_min * degree, f->mouth_min * degree,
+             "The smallest mouth is %.1f degrees, %.1f are asked: lower the scale factors there.", r->mouth_min * degree,
+             f->mouth_min * degree)
+            ->hinge = r->mouth_hinge;
+    if (r->scale_off_max > scale_gap) {
+        char name[16];
+        ax_panel_name(linkage, r->scale_off_triangle, name);
+        tell(r, AX_SEVERITY_WARNING, "scale", r->scale_off_max, scale_gap,
+             "Scale factors come out up to %.2f off what was asked, most at panel %s (asked %.2f, realised %.2f).",
+             r->scale_off_max, name, f->prescribed[r->scale_off_triangle], f->realised[r->scale_off_triangle])
+            ->triangle = r->scale_off_triangle;
+    }
+    if (moved && linkage->hole_count && r->opening_min < slack_opening) {
+        int slack = 0, least = 0;
+        for (int k = 0; k < linkage->hole_count; ++k) {
+            slack += f->opening[k] < slack_opening;
+            least = f->opening[k] < f->opening[least] ? k : least;
+        }
+        tell(r, AX_SEVERITY_WARNING, "slack", r->opening_min, slack_opening,
+             "%d of %d holes are slack, the slackest is %.0f %% open: too much material there.", slack, linkage->hole_count,
+             100 * r->opening_min)
+            ->hinge = linkage->hole_hinges[linkage->hole_start[least]];
+    }
+    int folds = moved ? ax_form_folds(f, (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed)) : 0;
+    if (folds)
+        tell(r, AX_SEVERITY_WARNING, "folded", folds, 0, "%d pairs of neighbouring panels are folded onto each other.", folds);
+    if (moved) {
+        int tight = 0;
+        for (int h = 0; h < linkage->hinge_count; ++h)
+            tight = f->material[h] > f->material[tight] ? h : tight;
+        if (f->material[tight] > tight_multiplier)
+            tell(r, AX_SEVERITY_WARNING, "tight", f->material[tight], tight_multiplier,
+                 "Too little material: panels are pulled %.1f edges beyond what they reach. Raise the scale factors or "
+                 "bring the boundary closer.",
+                 f->material[tight])
+                ->hinge = tight;
+    }
+    for (int k = 0; k < r->held_count; ++k)
+        if (r->held[k].residual > rim_gap * r->edge && strcmp(r->held[k].kind, "fairness") != 0)
+            tell(r, AX_SEVERITY_WARNING, "held", r->held[k].residual, rim_gap * r->edge, "'%s' (%s) is missed by up to %.3g %s.",
+                 r->held[k].name, r->held[k].kind, r->held[k].residual, unit);
+    if (r->curvature_max > 2 * AX_PI)
+        tell(r, AX_SEVERITY_WARNING, "overhang", r->curvature_max, 2 * AX_PI,
+             "The painted factors sum to %.0f degrees of curvature, above 360: fully open the surface turns over.",
+             r->curvature_max * degree);
+    else if (moved && r->overhang > 0)
+        tell(r, AX_SEVERITY_NOTE, "overhang", r->overhang, 0, "%.1f %% of the panels look down: no height field.", 100 * r->overhang);
+    for (int k = 0; k < f->underlay_count; ++k) {
+        ax_closest* tree = ax_closest_make(f->underlays + k);
+        const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
+        double least = INFINITY;
+        int at = -1;
+        for (int h = 0; h < linkage->hinge_count; ++h) {
+            double d = ax_closest_find(tree, x[h], -1).distance;
+            if (d < least)
+                least = d, at = h;
+        }
+        if (least < f->clearances[k])
+            tell(r, AX_SEVERITY_FAILURE, "clearance", least, f->clearances[k], "The shell comes within %.3g %s of '%s'; %.3g are asked.",
+                 least, unit, f->underlay_names[k], f->clearances[k])
+                ->hinge = at;
+        ax_closest_free(tree);
+    }
+    if (r->finding_count)
+        qsort(r->findings, (size_t)r->finding_count, sizeof *r->findings, by_severity);
+}
+
+void ax_form_measure(ax_form* f, ax_form_report* r)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    const double(*flat)[2] = (const double(*)[2])f->flat;
+    bool moved = f->dynamics.kind != AX_DYNAMICS_NONE, hangs = ax_form_hangs(f);
+    ax_form_look(f);
+    *r = (ax_form_report){.exact = f->exact, .iterations = f->iterations, .growth = f->growth, .scale_off_triangle = -1};
+    r->edge = ax_form_sides_mean(f);
+    r->flat_error = ax_form_flat_error(f);
+    r->deployed_error = moved ? ax_form_deployed_error(f) : NAN;
+    r->simulated_error = hangs ? ax_form_simulated_error(f) : NAN;
+    ax_mouth_measure mouths = ax_measure_mouths(linkage, flat);
+    r->mouth_min = mouths.min_deg * AX_PI / 180;
+    r->mouth_hinge = mouths.min_hinge;
+    r->flipped = ax_measure_flipped(linkage, flat);
+    r->overlap_pairs = ax_measure_overlaps(linkage, flat, overlap_depth * r->edge, 0, NULL);
+    r->realised_min = INFINITY, r->realised_max = -INFINITY;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double off = fabs(f->realised[t] - f->prescribed[t]);
+        r->realised_min = fmin(r->realised_min, f->realised[t]), r->realised_max = fmax(r->realised_max, f->realised[t]);
+        r->scale_off_rms += off * off / linkage->triangle_count;
+        if (off > r->scale_off_max)
+            r->scale_off_max = off, r->scale_off_triangle = t;
+    }
+    r->scale_off_rms = sqrt(r->scale_off_rms);
+    r->opening_min = 1, r->opening_mean = 0;
+    for (int k = 0; k < linkage->hole_count; ++k) {
+        r->opening_min = fmin(r->opening_min, f->opening[k]);
+        r->opening_mean += f->opening[k] / linkage->hole_count;
+    }
+    r->simulated_rms = r->simulated_max = NAN;
+    if (hangs) {
+        r->simulated_rms = r->simulated_max = 0;
+        for (int h = 0; h < linkage->hinge_count; ++h) {
+            double d = ax_distance3(f->simulated[h], f->deployed[h]) / r->edge;
+            r->simulated_rms += d * d / linkage->hinge_count;
+            r->simulated_max = fmax(r->simulated_max, d);
+        }
+        r->simulated_rms = sqrt(r->simulated_rms);
+    }
+    measure_overhang(f, r);
+    measure_held(f, r);
+    find_problems(f, r);
+    r->settled = true;
+    for (int k = 0; k < r->finding_count; ++k)
+        r->settled = r->settled && !(r->findings[k].severity == AX_SEVERITY_FAILURE && strcmp(r->findings[k].kind, "clearance") != 0);
+    f->settled = r->settled;
+}
+
+void ax_form_report_free(ax_form_report* r)
+{
+    ax_free(r->held);
+    ax_free(r->findings);
+    *r = (ax_form_report){0};
+}

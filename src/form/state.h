@@ -1,0 +1,131 @@
+// What a form holds: what was asked, the states, and the solvers that tie them. Shared by the files of this module only.
+#pragma once
+
+#include "ax/form.h"
+#include "base/pool.h"
+#include "constraint/place.h"
+#include "linkage/lattice.h"
+#include "mesh/closest.h"
+#include "solver/solver.h"
+
+typedef struct ax_named_set {
+    char* name;
+    int count;
+    int* hinges;
+} ax_named_set;
+
+// A rim part or a constraint with what is derived from it.
+typedef struct ax_holder {
+    ax_curve* curve;
+    ax_closest* surface;
+    ax_place place; // of either
+} ax_holder;
+
+// Groups of the solvers below, -1 where there is none.
+typedef struct ax_form_groups {
+    int panels, mouths, centres, holes, fairness;
+    int *rim, *held; // per rim part and per constraint
+} ax_form_groups;
+
+struct ax_form {
+    ax_lattice lattice;
+    ax_unit unit;
+
+    // derived from the lattice
+    double centre[2], radius; // of the sheet
+    double (*centres)[2];     // of the panels, on the sheet
+    int (*holder)[2];                  // panels of every hinge, -1: none
+    int mouth_count, (*mouths)[3];     // hinge, next, previous: the smaller angle of every inner hinge
+    int line_count, (*lines)[4];       // four hinges in a row on kagome lines
+    int bend_count, (*bends)[3];       // three in a row
+    int hole_count, *holes;            // those with six hinges, by number
+
+    // asked
+    double* prescribed;
+    double mouth_min; // radians
+    bool released;
+    ax_form_dynamics dynamics;
+    int rim_count;
+    ax_rim_part* rim;
+    int held_count;
+    ax_form_constraint* held;
+    int set_count;
+    ax_named_set* sets;
+    int underlay_count;
+    const char** underlay_names;
+    ax_mesh* underlays;
+    double* clearances;
+
+    // states
+    double (*flat)[2], (*deployed)[3], (*simulated)[3]; // simulated: always allocated
+    double (*side)[3];                                  // edge k of each panel, opposite corner k: what the load pass keeps
+    double growth;
+    bool exact, settled;
+    unsigned revision;
+    int iterations;
+    double scaled_step; // largest move of the last iteration over the spacing
+
+    // solvers, made when needed
+    ax_pool* pool;
+    ax_solver *shape, *hang;
+    ax_form_groups shape_groups, hang_groups;
+    int load; // of the hanging solver
+    ax_holder *rim_holder, *held_holder;
+    bool stale; // the solvers no longer fit what is asked
+    double* pending; // multipliers that were loaded and go into the next solvers: shape, then hang; NULL: none
+    size_t pending_count;
+
+    // measured on demand
+    double *realised, *opening, *material;
+
+    double (*scratch)[3]; // two per hinge
+    double* lanes;        // three per panel, six per hole
+};
+
+static inline bool ax_form_hangs(const ax_form* f)
+{
+    return f->dynamics.kind == AX_DYNAMICS_GRAVITY || f->dynamics.kind == AX_DYNAMICS_INFLATION;
+}
+
+// The deployed state has panels of its own that share their sizes with the flat ones.
+static inline bool ax_form_shares(const ax_form* f)
+{
+    return f->dynamics.kind == AX_DYNAMICS_EXPAND || (ax_form_hangs(f) && f->dynamics.adapt);
+}
+
+// Edge of a panel as prescribed.
+static inline double ax_form_side(const ax_form* f, int triangle)
+{
+    return 0.5 * f->prescribed[triangle] * f->lattice.spacing;
+}
+
+// Everything but the linkage, allocated for it and derived from it; states at the sheet.
+ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit);
+
+// Something asked has changed: solvers that no longer fit go; `forget` their multipliers too.
+void ax_form_changed(ax_form* form, bool rebuild, bool forget);
+
+// Deep copies of what a part or a constraint points to, and their release.
+ax_rim_part ax_rim_part_copy(const ax_rim_part* part);
+void ax_rim_part_release(ax_rim_part* part);
+ax_form_constraint ax_form_constraint_copy(const ax_form_constraint* constraint);
+void ax_form_constraint_release(ax_form_constraint* constraint);
+ax_curve* ax_curve_of_shape(const ax_curve_shape* shape);
+
+// Solvers for what is asked now, if there are none.
+void ax_form_build(ax_form* form);
+void ax_form_drop_solvers(ax_form* form);
+// The flat state twisted analytically to the prescribed factors.
+void ax_form_twist(ax_form* form);
+// Multipliers of both solvers, counted in *count; owned by the caller. NULL if there are none.
+double* ax_form_multipliers(const ax_form* form, size_t* count);
+
+// Largest |edge / its length - 1| of a state.
+double ax_form_flat_error(const ax_form* form);
+double ax_form_deployed_error(const ax_form* form);
+double ax_form_simulated_error(const ax_form* form);
+// Pairs of neighbouring panels whose normals oppose each other.
+int ax_form_folds(const ax_form* form, const double (*x)[3]);
+// Mean height of the deployed hinges above the rim's.
+double ax_form_bulge(const ax_form* form);
+double ax_form_sides_mean(const ax_form* form);

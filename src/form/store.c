@@ -1,0 +1,266 @@
+// A form as bytes: a magic number, a version, every field in order, and a checksum. Little-endian, as the document's arrays are.
+#include "form/state.h"
+
+#include <stdint.h>
+#include <string.h>
+
+static const char magic[8] = "axform01";
+enum { MOST = 100000000 }; // entries of any one array
+
+typedef struct stream {
+    unsigned char* bytes;
+    size_t size, at, room; // writing: room allocated; reading: size given
+    bool reading, bad;
+} stream;
+
+static void raw(stream* s, void* data, size_t bytes)
+{
+    if (s->reading) {
+        if (s->bad || s->size - s->at < bytes) {
+            s->bad = true;
+            memset(data, 0, bytes);
+            return;
+        }
+        memcpy(data, s->bytes + s->at, bytes);
+        s->at += bytes;
+        return;
+    }
+    if (s->room - s->size < bytes) {
+        s->room = 2 * (s->room + bytes) + 4096;
+        s->bytes = ax_realloc(s->bytes, s->room, 1);
+    }
+    if (bytes)
+        memcpy(s->bytes + s->size, data, bytes);
+    s->size += bytes;
+}
+
+#define FIELD(s, value) raw(s, &(value), sizeof(value))
+
+// An array of `count` elements, whose count is known; allocated when reading.
+static void* array(stream* s, const void* data, size_t count, size_t size)
+{
+    if (!s->reading) {
+        raw(s, (void*)data, count * size);
+        return (void*)data;
+    }
+    if (s->bad || count > MOST || s->size - s->at < count * size) {
+        s->bad = true;
+        return ax_calloc(1, size);
+    }
+    void* block = ax_alloc(count ? count : 1, size);
+    raw(s, block, count * size);
+    return block;
+}
+
+#define ARRAY(s, pointer, count) ((pointer) = array(s, pointer, (size_t)(count), sizeof *(pointer)))
+
+static void counted(stream* s, int* count, int least)
+{
+    raw(s, count, sizeof *count);
+    if (*count < least || *count > MOST)
+        s->bad = true, *count = 0;
+}
+
+static void text(stream* s, const char** value)
+{
+    int length = s->reading ? 0 : (int)strlen(*value);
+    counted(s, &length, 0);
+    char* to = s->reading ? ax_calloc((size_t)length + 1, 1) : (char*)*value;
+    raw(s, to, (size_t)length);
+    *value = to;
+}
+
+static void shape(stream* s, ax_curve_shape* curve)
+{
+    FIELD(s, curve->kind);
+    FIELD(s, curve->closed);
+    counted(s, &curve->count, 0);
+    ARRAY(s, curve->points, curve->count);
+}
+
+static void mesh(stream* s, ax_mesh* m)
+{
+    counted(s, &m->vertex_count, 0);
+    counted(s, &m->face_count, 0);
+    ARRAY(s, m->positions, m->vertex_count);
+    ARRAY(s, m->faces, m->face_count);
+}
+
+static void linkage(stream* s, ax_linkage* l)
+{
+    counted(s, &l->triangle_count, 1);
+    counted(s, &l->hinge_count, 1);
+    counted(s, &l->hole_count, 0);
+    counted(s, &l->opening_count, 0);
+    ARRAY(s, l->triangles, l->triangle_count);
+    ARRAY(s, l->panels, l->triangle_count);
+    ARRAY(s, l->hole_start, l->hole_count + 1);
+    ARRAY(s, l->opening_start, l->opening_count + 1);
+    ARRAY(s, l->hole_hinges, l->hole_start[l->hole_count]);
+    ARRAY(s, l->opening_hinges, l->opening_start[l->opening_count]);
+    ARRAY(s, l->on_rim, l->hinge_count);
+}
+
+static void rim_part(stream* s, ax_rim_part* part)
+{
+    FIELD(s, part->kind);
+    counted(s, &part->count, 0);
+    ARRAY(s, part->hinges, part->count);
+    if (part->kind == AX_RIM_FIXED)
+        ARRAY(s, part->places, part->count);
+    if (part->kind == AX_RIM_SLIDE)
+        shape(s, &part->curve);
+}
+
+static void constraint(stream* s, ax_form_constraint* c)
+{
+    text(s, &c->name);
+    FIELD(s, c->kind);
+    counted(s, &c->count, 0);
+    ARRAY(s, c->hinges, c->count);
+    FIELD(s, c->weight);
+    FIELD(s, c->point);
+    FIELD(s, c->direction);
+    FIELD(s, c->order);
+    FIELD(s, c->support);
+    if (c->kind == AX_HELD_FIXED)
+        ARRAY(s, c->places, c->count);
+    if (c->kind == AX_HELD_CURVE)
+        shape(s, &c->curve);
+    if (c->kind == AX_HELD_SURFACE) {
+        if (s->reading)
+            c->surface = AX_NEW0(ax_mesh, 1);
+        mesh(s, (ax_mesh*)c->surface);
+    }
+}
+
+static void lattice(stream* s, ax_lattice* l)
+{
+    linkage(s, &l->linkage);
+    ARRAY(s, l->hinges, l->linkage.hinge_count);
+    FIELD(s, l->spacing);
+    FIELD(s, l->angle);
+    FIELD(s, l->offset);
+}
+
+// Copies an array of the form when reading, so that those made with the form stay in place.
+static void state(stream* s, void* data, size_t bytes)
+{
+    raw(s, data, bytes);
+}
+
+static void body(stream* s, ax_form* f)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count, t = (size_t)f->lattice.linkage.triangle_count;
+    state(s, f->prescribed, t * sizeof *f->prescribed);
+    FIELD(s, f->mouth_min);
+    FIELD(s, f->released);
+    FIELD(s, f->dynamics);
+    state(s, f->flat, n * sizeof *f->flat);
+    state(s, f->deployed, n * sizeof *f->deployed);
+    state(s, f->simulated, n * sizeof *f->simulated);
+    state(s, f->side, t * sizeof *f->side);
+    FIELD(s, f->growth);
+    FIELD(s, f->exact);
+    FIELD(s, f->settled);
+    FIELD(s, f->revision);
+    FIELD(s, f->iterations);
+
+    counted(s, &f->rim_count, 0);
+    if (s->reading)
+        f->rim = AX_NEW0(ax_rim_part, f->rim_count + 1);
+    for (int k = 0; k < f->rim_count && !s->bad; ++k)
+        rim_part(s, f->rim + k);
+    counted(s, &f->held_count, 0);
+    if (s->reading)
+        f->held = AX_NEW0(ax_form_constraint, f->held_count + 1);
+    for (int k = 0; k < f->held_count && !s->bad; ++k)
+        constraint(s, f->held + k);
+    counted(s, &f->set_count, 0);
+    if (s->reading)
+        f->sets = AX_NEW0(ax_named_set, f->set_count + 1);
+    for (int k = 0; k < f->set_count && !s->bad; ++k) {
+        text(s, (const char**)&f->sets[k].name);
+        counted(s, &f->sets[k].count, 0);
+        ARRAY(s, f->sets[k].hinges, f->sets[k].count);
+    }
+    counted(s, &f->underlay_count, 0);
+    if (s->reading) {
+        f->underlay_names = AX_NEW0(const char*, f->underlay_count + 1);
+        f->underlays = AX_NEW0(ax_mesh, f->underlay_count + 1);
+    }
+    for (int k = 0; k < f->underlay_count && !s->bad; ++k) {
+        text(s, f->underlay_names + k);
+        mesh(s, f->underlays + k);
+    }
+    ARRAY(s, f->clearances, f->underlay_count);
+}
+
+static uint64_t checksum(const unsigned char* bytes, size_t size)
+{
+    uint64_t sum = 0xcbf29ce484222325u; // FNV-1a
+    for (size_t k = 0; k < size; ++k)
+        sum = (sum ^ bytes[k]) * 0x100000001b3u;
+    return sum;
+}
+
+void* ax_form_save(const ax_form* form, size_t* size)
+{
+    stream s = {0};
+    ax_form* f = (ax_form*)form; // writing changes nothing
+    raw(&s, (void*)magic, sizeof magic);
+    FIELD(&s, f->unit);
+    lattice(&s, &f->lattice);
+    body(&s, f);
+    size_t count;
+    double* multipliers = ax_form_multipliers(f, &count);
+    uint64_t length = count;
+    FIELD(&s, length);
+    raw(&s, multipliers, count * sizeof *multipliers);
+    ax_free(multipliers);
+    uint64_t sum = checksum(s.bytes, s.size);
+    FIELD(&s, sum);
+    *size = s.size;
+    return s.bytes;
+}
+
+static ax_status damaged(ax_error* error)
+{
+    return ax_fail(error, AX_BAD_INPUT, "The stored form is damaged or was written by another version.");
+}
+
+ax_status ax_form_load(const void* bytes, size_t size, ax_form** out, ax_error* error)
+{
+    *out = NULL;
+    uint64_t sum;
+    if (size < sizeof magic + sizeof sum || memcmp(bytes, magic, sizeof magic) != 0)
+        return damaged(error);
+    memcpy(&sum, (const unsigned char*)bytes + size - sizeof sum, sizeof sum);
+    if (sum != checksum(bytes, size - sizeof sum))
+        return damaged(error);
+    stream s = {.bytes = (unsigned char*)bytes, .size = size - sizeof sum, .at = sizeof magic, .reading = true};
+    ax_unit unit;
+    ax_lattice sheet = {0};
+    FIELD(&s, unit);
+    lattice(&s, &sheet);
+    if (s.bad || ax_linkage_check(&sheet.linkage, NULL) != AX_OK) {
+        ax_lattice_free(&sheet);
+        return damaged(error);
+    }
+    ax_form* f = ax_form_over(&sheet, unit);
+    body(&s, f);
+    uint64_t length = 0;
+    FIELD(&s, length);
+    f->pending = array(&s, NULL, length, sizeof *f->pending);
+    f->pending_count = length;
+    if (s.bad || s.at != s.size) {
+        ax_form_free(f);
+        return damaged(error);
+    }
+    if (length == 0) {
+        ax_free(f->pending);
+        f->pending = NULL;
+    }
+    *out = f;
+    return AX_OK;
+}

@@ -1,0 +1,378 @@
+// The engine of form-finding: what the states must satisfy whatever is asked, and the stages of the paper's figure 4.
+#include "support/test.h"
+
+#include "ax/form.h"
+
+#include "base/vec.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SIDES = 96 };
+
+static ax_form* disk(int triangles, double scale)
+{
+    double outline[SIDES][2];
+    for (int k = 0; k < SIDES; ++k)
+        outline[k][0] = cos(2 * AX_PI * k / SIDES), outline[k][1] = sin(2 * AX_PI * k / SIDES);
+    ax_form_start start = {.outline_count = SIDES,
+                           .outline = (const double(*)[2])outline,
+                           .triangles = triangles,
+                           .scale = scale,
+                           .unit = AX_METRE};
+    ax_form* form;
+    ax_error error;
+    assert_int_equal(ax_form_make(&start, &form, &error), AX_OK);
+    return form;
+}
+
+// Prescribes scale(r) of the distance from the middle.
+static void paint(ax_form* form, double (*scale)(double r))
+{
+    ax_form_view view = ax_form_look(form);
+    double* values = AX_NEW(double, view.linkage->triangle_count);
+    for (int t = 0; t < view.linkage->triangle_count; ++t) {
+        double middle[2] = {0, 0};
+        for (int k = 0; k < 3; ++k)
+            for (int c = 0; c < 2; ++c)
+                middle[c] += view.sheet[view.linkage->triangles[t][k]][c] / 3;
+        values[t] = scale(sqrt(middle[0] * middle[0] + middle[1] * middle[1]));
+    }
+    ax_form_prescribe(form, values);
+    ax_free(values);
+}
+
+static double jump(double r)
+{
+    return r < 0.5 ? 1.9 : 1.2;
+}
+
+static double sphere(double r) // constant curvature
+{
+    return 1.7 / (1 + 0.35 * r * r);
+}
+
+static void settle(ax_form* form)
+{
+    ax_error error;
+    assert_int_equal(ax_form_settle(form, 0, NULL, &error), AX_OK);
+}
+
+static ax_form_report measured(ax_form* form)
+{
+    ax_form_report report;
+    ax_form_measure(form, &report);
+    return report;
+}
+
+static void set_dynamics(ax_form* form, ax_dynamics_kind kind, double give)
+{
+    ax_form_dynamics dynamics = ax_form_dynamics_default();
+    dynamics.kind = kind;
+    dynamics.give = give;
+    dynamics.adapt = give > 0 || kind == AX_DYNAMICS_EXPAND;
+    dynamics.load.kind = kind == AX_DYNAMICS_GRAVITY     ? AX_LOAD_GRAVITY
+                         : kind == AX_DYNAMICS_INFLATION ? AX_LOAD_INFLATION
+                                                         : AX_LOAD_NONE;
+    ax_form_set_dynamics(form, &dynamics);
+}
+
+static void slide_on_circle(ax_form* form, double radius)
+{
+    ax_form_view view = ax_form_look(form);
+    int *rim = AX_NEW(int, view.linkage->hinge_count), count = 0;
+    for (int h = 0; h < view.linkage->hinge_count; ++h)
+        if (view.linkage->on_rim[h])
+            rim[count++] = h;
+    double circle[3][3] = {{0, 0, 0}, {0, 0, 1}, {radius, 0, 0}};
+    ax_rim_part part = {.kind = AX_RIM_SLIDE,
+                        .count = count,
+                        .hinges = rim,
+                        .curve = {AX_CURVE_CIRCLE, true, 3, (const double(*)[3])circle}};
+    ax_error error;
+    assert_int_equal(ax_form_set_rim(form, 1, &part, &error), AX_OK);
+    ax_free(rim);
+}
+
+static void uniform_sheets_open_flat_and_stop_at_lambda(void** state)
+{
+    (void)state;
+    for (int k = 0; k < 3; ++k) {
+        double lambda[3] = {1.1, 1.4, 1.8};
+        ax_form* form = disk(300, lambda[k]);
+        ax_form_report start = measured(form);
+        assert_near(start.realised_min, lambda[k], 1e-12);
+        assert_near(start.realised_max, lambda[k], 1e-12);
+        assert_at_most(start.flat_error, 1e-12);
+        // fully open every length has grown by lambda, in all directions alike
+        ax_form_view view = ax_form_look(form);
+        for (int h = 1; h < view.linkage->hinge_count; h += 17) {
+            double flat = ax_distance2(view.sheet[h], view.sheet[0]);
+            assert_near(ax_distance3(view.deployed[h], view.deployed[0]) / flat, lambda[k], 1e-12);
+        }
+        ax_form_report_free(&start);
+        ax_form_free(form);
+    }
+}
+
+static void painted_spheres_expand_to_spheres(void** state)
+{
+    (void)state;
+    ax_form* form = disk(600, 1.2);
+    paint(form, sphere);
+    set_dynamics(form, AX_DYNAMICS_EXPAND, 0);
+    settle(form);
+    ax_form_report r = measured(form);
+    assert_true(r.settled);
+    assert_at_most(r.flat_error, 1e-3);
+    assert_at_most(r.deployed_error, 1e-3);
+    assert_int_equal(r.overlap_pairs + r.flipped, 0);
+    assert_true(r.opening_min > 0.99);
+    assert_at_most(r.overhang, 0);
+    // lambda = l / (1 + k r^2) is a sphere of radius R = l / (2 sqrt k), and r its polar angle 2 atan(sqrt(k) r): the cap's height
+    ax_form_view view = ax_form_look(form);
+    double radius = 1.7 / (2 * sqrt(0.35)), lo = INFINITY, hi = -INFINITY, sheet = 0;
+    for (int h = 0; h < view.linkage->hinge_count; ++h) {
+        lo = fmin(lo, view.deployed[h][2]), hi = fmax(hi, view.deployed[h][2]);
+        sheet = fmax(sheet, hypot(view.sheet[h][0], view.sheet[h][1]));
+    }
+    assert_near((hi - lo) / (radius * (1 - cos(2 * atan(sqrt(0.35) * sheet)))), 1, 0.03);
+    ax_form_report_free(&r);
+    ax_form_free(form);
+}
+
+static void stages_of_figure_4(void** state)
+{
+    (void)state;
+    ax_form* form = disk(600, 1.3);
+    paint(form, jump);
+    ax_form_dynamics dynamics = ax_form_dynamics_default();
+    dynamics.collisions = true;
+    ax_form_set_dynamics(form, &dynamics);
+    settle(form);
+    ax_form_report r = measured(form);
+    assert_true(r.growth > 1.05); // the sheet had to grow
+    assert_int_equal(r.overlap_pairs, 0);
+    assert_true(r.curvature_max > 2 * AX_PI);
+    assert_true(r.scale_off_max > 0.1);
+    ax_form_report_free(&r);
+
+    set_dynamics(form, AX_DYNAMICS_EXPAND, 0);
+    settle(form);
+    r = measured(form);
+    assert_true(r.overhang > 0.02); // a bulb
+    ax_form_report_free(&r);
+
+    paint(form, sphere);
+    set_dynamics(form, AX_DYNAMICS_EXPAND, 3);
+    settle(form);
+    r = measured(form);
+    assert_true(r.settled && r.overhang == 0); // a height field
+    ax_form_report_free(&r);
+
+    slide_on_circle(form, 1.2);
+    set_dynamics(form, AX_DYNAMICS_GRAVITY, 3);
+    settle(form);
+    r = measured(form);
+    assert_true(r.settled);
+    assert_int_equal(r.held_count, 1);
+    assert_at_most(r.held[0].residual, 1e-4);
+    assert_at_most(r.simulated_rms, 0.3);
+    ax_form_report_free(&r);
+
+    // exact, and proven
+    ax_design design;
+    ax_finish finish;
+    ax_error error;
+    assert_int_equal(ax_form_finish(form, NULL, &design, &finish, &error), AX_OK);
+    assert_true(finish.exact);
+    assert_at_most(finish.deployed_moved_rms, 0.1);
+    assert_at_most(design.report.congruence_max, 1e-9);
+    assert_int_equal(design.report.overlap_pairs, 0);
+    assert_at_most(design.report.force_residual, 1e-9);
+    r = measured(form);
+    assert_true(r.exact);
+    assert_at_most(r.held[0].residual, 1e-10);
+    ax_form_report_free(&r);
+    ax_design_free(&design);
+    ax_form_free(form);
+}
+
+static void stored_forms_go_on_with_the_same_bits(void** state)
+{
+    (void)state;
+    ax_form* form = disk(200, 1.2);
+    paint(form, sphere);
+    slide_on_circle(form, 1.3);
+    set_dynamics(form, AX_DYNAMICS_INFLATION, 3);
+    int some[3] = {3, 14, 15};
+    ax_form_name_selection(form, "some", 3, some);
+    ax_form_constraint plane = {.name = "arch", .kind = AX_HELD_PLANE, .count = 20, .weight = 1};
+    int arch[20];
+    for (int k = 0; k < 20; ++k)
+        arch[k] = 5 * k;
+    plane.hinges = arch;
+    ax_error error;
+    assert_int_equal(ax_form_put_constraint(form, &plane, &error), AX_OK);
+    ax_form_iterate(form, 40);
+    size_t size, again;
+    void *bytes = ax_form_save(form, &size), *copy = NULL;
+    ax_form* other;
+    assert_int_equal(ax_form_load(bytes, size, &other, &error), AX_OK);
+    copy = ax_form_save(other, &again);
+    assert_int_equal(size, again);
+    assert_memory_equal(bytes, copy, size);
+    ax_form_iterate(form, 30);
+    ax_form_iterate(other, 30);
+    size_t n = (size_t)ax_form_look(form).linkage->hinge_count;
+    assert_memory_equal(ax_form_look(form).simulated, ax_form_look(other).simulated, n * 3 * sizeof(double));
+    assert_memory_equal(ax_form_look(form).flat, ax_form_look(other).flat, n * 2 * sizeof(double));
+    int count;
+    assert_memory_equal(ax_form_selection(other, "some", &count), some, sizeof some);
+
+    // damage is noticed wherever it is
+    for (size_t k = 0; k < size; k += size / 37) {
+        ((unsigned char*)bytes)[k] ^= 0x10;
+        ax_form* bad;
+        assert_int_equal(ax_form_load(bytes, size, &bad, &error), AX_BAD_INPUT);
+        assert_null(bad);
+        ((unsigned char*)bytes)[k] ^= 0x10;
+    }
+    ax_free(bytes);
+    ax_free(copy);
+    ax_form_free(form);
+    ax_form_free(other);
+}
+
+static bool stop(void* context, const char* stage, double fraction, double residual)
+{
+    (void)stage, (void)fraction, (void)residual;
+    return --*(int*)context > 0;
+}
+
+static void a_cancelled_settle_changes_nothing(void** state)
+{
+    (void)state;
+    ax_form* form = disk(200, 1.2);
+    paint(form, sphere);
+    set_dynamics(form, AX_DYNAMICS_EXPAND, 3);
+    ax_form_iterate(form, 10);
+    size_t n = (size_t)ax_form_look(form).linkage->hinge_count;
+    double(*before)[3] = ax_copy(ax_form_look(form).deployed, n, sizeof *before);
+    int calls = 3;
+    ax_progress progress = {stop, &calls};
+    ax_error error;
+    assert_int_equal(ax_form_settle(form, 0, &progress, &error), AX_CANCELLED);
+    assert_memory_equal(ax_form_look(form).deployed, before, n * sizeof *before);
+    ax_free(before);
+    ax_form_free(form);
+}
+
+// Every kind of constraint is missed before it is asked and kept after.
+static void constraints_hold(void** state)
+{
+    (void)state;
+    for (int kind = AX_HELD_PLANE; kind <= AX_HELD_FAIR; ++kind) {
+        if (kind == AX_HELD_SURFACE || kind == AX_HELD_MIRROR || kind == AX_HELD_ROTATION)
+            continue; // by the operators' tests, which know the partners
+        ax_form* form = disk(300, 1.2);
+        paint(form, sphere);
+        set_dynamics(form, AX_DYNAMICS_EXPAND, 3);
+        settle(form);
+        ax_form_view view = ax_form_look(form);
+        int chosen[6], count = 0, wanted = kind == AX_HELD_LINE ? 3 : 6; // hinges across the dome
+        double places[6][3];
+        for (int h = 0; h < view.linkage->hinge_count && count < wanted; ++h)
+            if (fabs(view.sheet[h][1] - 0.3) < 0.6 * view.spacing && (count == 0 || view.sheet[h][0] > view.sheet[chosen[count - 1]][0]))
+                chosen[count++] = h;
+        for (int k = 0; k < count; ++k) {
+            memcpy(places[k], view.deployed[chosen[k]], sizeof places[k]);
+            places[k][2] += 0.05;
+        }
+        ax_form_constraint c = {.name = "held",
+                                .kind = (ax_held_kind)kind,
+                                .count = count,
+                                .hinges = chosen,
+                                .weight = 1,
+                                .point = {0, places[0][1] + 0.02, 0},
+                                .direction = {0, 1, 0},
+                                .places = (const double(*)[3])places,
+                                .curve = {AX_CURVE_SPLINE, false, count, (const double(*)[3])places}};
+        ax_error error;
+        assert_int_equal(ax_form_put_constraint(form, &c, &error), AX_OK);
+        ax_form_report before = measured(form);
+        settle(form);
+        ax_form_report after = measured(form);
+        assert_int_equal(after.held_count, 1);
+        if (!(before.held[0].residual > 1e-4) || !(after.held[0].residual < 0.3 * before.held[0].residual || kind == AX_HELD_FAIR))
+            fail_msg("%s: %g before, %g after", ax_held_kind_name((ax_held_kind)kind), before.held[0].residual,
+                     after.held[0].residual);
+        assert_true(after.held[0].residual < before.held[0].residual);
+        assert_true(ax_form_drop_constraint(form, "held"));
+        assert_false(ax_form_drop_constraint(form, "held"));
+        ax_form_report_free(&before);
+        ax_form_report_free(&after);
+        ax_form_free(form);
+    }
+}
+
+static void too_little_material_is_told(void** state)
+{
+    (void)state;
+    ax_form* form = disk(300, 1.2);
+    slide_on_circle(form, 1.6); // a third beyond what it reaches
+    set_dynamics(form, AX_DYNAMICS_GRAVITY, 0);
+    settle(form);
+    ax_form_report r = measured(form);
+    assert_false(r.settled);
+    bool told = false;
+    for (int k = 0; k < r.finding_count; ++k)
+        told = told || strcmp(r.findings[k].kind, "tight") == 0;
+    assert_true(told);
+    ax_form_report_free(&r);
+    ax_form_free(form);
+}
+
+static void unusable_requests_are_refused(void** state)
+{
+    (void)state;
+    double line[3][2] = {{0, 0}, {1, 1}, {2, 2}}, square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    ax_form* form;
+    ax_error error;
+    ax_form_start start = {.outline_count = 3, .outline = (const double(*)[2])line, .triangles = 100, .scale = 1.2};
+    assert_int_equal(ax_form_make(&start, &form, &error), AX_USAGE);
+    start.outline = (const double(*)[2])square, start.outline_count = 4, start.scale = 2.5;
+    assert_int_equal(ax_form_make(&start, &form, &error), AX_USAGE);
+    start.scale = 1.2, start.triangles = 3;
+    assert_int_not_equal(ax_form_make(&start, &form, &error), AX_OK);
+    assert_null(form);
+    form = disk(200, 1.2);
+    int twice[2] = {4, 4}, beyond[1] = {1000000};
+    ax_rim_part part = {.kind = AX_RIM_FREE, .count = 2, .hinges = twice};
+    assert_int_equal(ax_form_set_rim(form, 1, &part, &error), AX_USAGE);
+    part.count = 1, part.hinges = beyond;
+    assert_int_equal(ax_form_set_rim(form, 1, &part, &error), AX_USAGE);
+    ax_form_constraint c = {.name = "", .kind = AX_HELD_PLANE, .count = 2, .hinges = twice, .weight = 1};
+    assert_int_equal(ax_form_put_constraint(form, &c, &error), AX_USAGE);
+    c.name = "two";
+    assert_int_equal(ax_form_put_constraint(form, &c, &error), AX_USAGE);
+    ax_design design;
+    ax_finish finish;
+    assert_int_equal(ax_form_finish(form, NULL, &design, &finish, &error), AX_CANNOT_REALISE); // nothing deployed
+    ax_form_free(form);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(uniform_sheets_open_flat_and_stop_at_lambda),
+        cmocka_unit_test(painted_spheres_expand_to_spheres),
+        cmocka_unit_test(stages_of_figure_4),
+        cmocka_unit_test(stored_forms_go_on_with_the_same_bits),
+        cmocka_unit_test(a_cancelled_settle_changes_nothing),
+        cmocka_unit_test(constraints_hold),
+        cmocka_unit_test(too_little_material_is_told),
+        cmocka_unit_test(unusable_requests_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
