@@ -1,0 +1,24 @@
+import { render } from "preact";
+import "./styles/tokens.css";
+import "./styles/base.css";
+import "./styles/controls.css";
+import "./styles/layout.css";
+import { socketTo } from "./protocol/link";
+import { connect, latency } from "./state/session";
+import { stage } from "./state/view";
+import { App } from "./ui/app";
+import { listenToKeys } from "./ui/keyboard";
+
+async function begin(): Promise<void> {
+    listenToKeys();
+    render(<App />, document.getElementById("app")!);
+    const fixture = import.meta.env.DEV ? new URLSearchParams(location.search).get("fixture") : null;
+    if (import.meta.env.DEV && fixture) {
+        const { fixtureTransport } = await import("../dev/fixture");
+        connect(fixtureTransport(fixture));
+    } else connect(socketTo(location));
+}
+
+/** For tests: latencies from hand to screen, milliseconds, and what drawing itself took. */
+Object.assign(window, { auxshell: { latency, drawTime: () => stage.value?.drawTime ?? 0 } });
+void begin();

@@ -1,0 +1,47 @@
+// "Can it deploy?", always in sight: a verdict and what it hangs on. A check leads to its place.
+import { show } from "../state/selection";
+import { report, status } from "../state/session";
+import { mode } from "../state/view";
+import type { Check } from "../protocol/types";
+import { severityClass, severityIcon } from "./controls";
+import { plural } from "./format";
+import { Icon } from "./icons";
+
+/** Five of the seven have room; forces and match matter once there is a load, curvature and overlaps before. */
+function shownChecks(all: Check[]): Check[] {
+    const wanted = mode.value === "analyse" ? ["scale", "mouth", "curvature", "match", "force"] : ["scale", "mouth", "curvature", "overlap", "rim"];
+    const rank = { failure: 0, warning: 1, note: 2, pass: 2, unknown: 3 };
+    const chosen = all.filter((c) => wanted.includes(c.key));
+    for (const c of all)
+        if (!chosen.includes(c) && rank[c.severity] < 2) {
+            // what needs a look takes the place of what does not
+            const k = chosen.findLastIndex((x) => rank[x.severity] >= 2);
+            if (k >= 0) chosen[k] = c;
+        }
+    return chosen.sort((a, b) => wanted.indexOf(a.key) - wanted.indexOf(b.key));
+}
+
+export function Checks() {
+    const r = report.value;
+    const busy = status.value !== null && status.value.solver !== "idle";
+    if (!r) return <section class="checks" aria-label="Can it deploy?"><div class="verdict"><span class="q">Can it deploy?</span><span class="answer muted">Not known yet</span></div></section>;
+    const failed = r.checks.filter((c) => c.severity === "failure").length;
+    const warned = r.checks.filter((c) => c.severity === "warning").length;
+    const words = failed ? `${plural(failed, "check")} failed` : warned ? `${plural(warned, "check")} ${warned === 1 ? "needs" : "need"} a look` : r.verdict.severity === "unknown" ? "Still measuring" : "All checks passed";
+    return (
+        <section class={`checks${busy ? " stale" : ""}`} aria-label="Can it deploy?">
+            <div class="verdict">
+                <span class="q">Can it deploy?</span>
+                <span class={`answer ${severityClass[r.verdict.severity]}`}><Icon name={severityIcon[r.verdict.severity]} size={20} /><span>{r.verdict.word}</span></span>
+                <span class="l">{words}</span>
+            </div>
+            {shownChecks(r.checks).map((c) => (
+                <button key={c.key} type="button" title={`${c.title}: ${c.answer}. ${c.limit}`} onClick={() => show(c.triangle, c.hinge)}>
+                    <span class="q">{c.title}</span>
+                    <span class="answer"><Icon name={severityIcon[c.severity]} size={16} class={`icon ${severityClass[c.severity]}`} /><span>{c.answer}</span></span>
+                    <span class="l">{c.limit}</span>
+                </button>
+            ))}
+        </section>
+    );
+}

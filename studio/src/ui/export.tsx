@@ -1,0 +1,166 @@
+// Export: every format that the program writes, with a look at what will be cut.
+import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import type { ExportedFile, Exporter, StateName } from "../protocol/types";
+import { CommandError } from "../protocol/link";
+import { ask, currentShell, documentState, hello, report, revision, status } from "../state/session";
+import { download, savePicture } from "../state/commands";
+import { dialog } from "../state/view";
+import { Button, Choice, Dialog, NumberRow, Row, Section } from "./controls";
+import { bytes, count, plural } from "./format";
+import { Icon } from "./icons";
+
+const groups: { title: string; endings: string[] }[] = [
+    { title: "Cut", endings: [".svg", ".dxf", ".pdf"] },
+    { title: "Model", endings: [".glb", ".obj", ".stl", ".3mf", ".ply", ".3dm"] },
+    { title: "Data", endings: [".json", ".recipe.json", ".csv"] },
+    { title: "Picture", endings: [".png"] },
+];
+const sidewords: Record<string, string> = { ".svg": "laser", ".dxf": "CNC", ".pdf": "print", ".json": "design", ".recipe.json": "recipe", ".csv": "table" };
+const dotted = (e: Exporter) => (e.ending.startsWith(".") ? e.ending : `.${e.ending}`);
+const isCut = (ending: string) => groups[0].endings.includes(ending);
+/** Options that cut formats take. */
+const cutDefaults = { sheet: "", kerf: 0 };
+
+export function ExportDialog() {
+    revision.value;
+    const exporters = hello.value?.exporters ?? [];
+    const ending = useSignal(exporters.some((e) => dotted(e) === ".svg") ? ".svg" : exporters[0] ? dotted(exporters[0]) : "picture");
+    const state = useSignal<StateName | "">("");
+    const options = useSignal<{ sheet: string; kerf: number }>(cutDefaults);
+    const files = useSignal<ExportedFile[] | null>(null);
+    const busy = useSignal(false);
+    const wrong = useSignal("");
+    const looked = useSignal<{ urls: string[]; names: string[]; at: number } | null>(null);
+    const exporter = exporters.find((e) => dotted(e) === ending.value);
+    const shell = currentShell();
+    const has = (s: StateName) => s !== "simulated" || shell?.simulated !== null;
+
+    const run = async (): Promise<ExportedFile[] | null> => {
+        if (!exporter) return null;
+        wrong.value = "";
+        busy.value = true;
+        try {
+            const cut = isCut(ending.value) ? { ...(options.value.sheet ? { sheet: options.value.sheet } : {}), ...(options.value.kerf ? { kerf: options.value.kerf } : {}) } : {};
+            const answer = await ask("export", { ending: exporter.ending, ...(state.value ? { state: state.value } : {}), ...cut });
+            return answer.files as ExportedFile[];
+        } catch (error) {
+            wrong.value = error instanceof CommandError ? error.problem.message : String(error);
+            return null;
+        } finally {
+            busy.value = false;
+        }
+    };
+
+    // the preview is the file itself, as it would be cut
+    useEffect(() => {
+        let current = true;
+        const made: string[] = [];
+        looked.value = null;
+        files.value = null;
+        if (ending.value === ".svg" || ending.value === ".png")
+            void run().then(async (list) => {
+                if (!list || !current) return;
+                files.value = list;
+                const sheets = list.length > 1 ? list.filter((f) => /-\d+\.\w+$/.test(f.name)) : list;
+                const urls: string[] = [];
+                for (const f of sheets.slice(0, 12)) {
+                    const blob = await (await fetch(f.url)).blob();
+                    urls.push(URL.createObjectURL(blob));
+                }
+                made.push(...urls);
+                if (current) looked.value = { urls, names: sheets.map((f) => f.name), at: 0 };
+            });
+        return () => {
+            current = false;
+            made.forEach((u) => URL.revokeObjectURL(u));
+        };
+    }, [ending.value, state.value, options.value]);
+
+    const exportNow = async () => {
+        if (ending.value === "picture") {
+            await savePicture();
+            dialog.value = null;
+            return;
+        }
+        const list = await run();
+        if (!list) return;
+        for (const f of list) download(f.url, f.name);
+        files.value = list;
+    };
+    const exact = status.value?.state === "exact";
+    const states = exporter?.states.filter(has) ?? [];
+    return (
+        <Dialog title="Export" size="wide" onClose={() => (dialog.value = null)} footer={
+            <>
+                <span class="grow ellipsis small" role="status">{files.value ? `${files.value.map((f) => f.name).slice(0, 3).join(", ")}${files.value.length > 3 ? ` and ${files.value.length - 3} more` : ""}, ${bytes(files.value.reduce((s, f) => s + f.bytes, 0))}` : exporter?.doc}</span>
+                <Button onClick={() => (dialog.value = null)}>Cancel</Button>
+                <Button primary disabled={busy.value || (!exporter && ending.value !== "picture")} onClick={() => void exportNow()}>{busy.value ? "Working" : files.value && files.value.length > 1 ? `Export ${plural(files.value.length, "file")}` : "Export"}</Button>
+            </>
+        }>
+            <div class="export">
+                <div class="formats" role="radiogroup" aria-label="Format">
+                    {groups.map((g) => {
+                        const all = exporters.filter((e) => g.endings.includes(dotted(e)));
+                        if (!all.length && g.title !== "Picture") return null;
+                        return (
+                            <div key={g.title}>
+                                <h3>{g.title}</h3>
+                                {all.map((e) => (
+                                    <button key={e.ending} type="button" role="radio" aria-checked={ending.value === dotted(e)} onClick={() => ((ending.value = dotted(e)), (state.value = ""))}>
+                                        {e.name}<span>{sidewords[dotted(e)] ?? ""}</span>
+                                    </button>
+                                ))}
+                                {g.title === "Picture" && <button type="button" role="radio" aria-checked={ending.value === "picture"} onClick={() => (ending.value = "picture")}>PNG of the view<span>screen</span></button>}
+                            </div>
+                        );
+                    })}
+                    {exporters.filter((e) => !groups.some((g) => g.endings.includes(dotted(e)))).map((e) => (
+                        <button key={e.ending} type="button" role="radio" aria-checked={ending.value === dotted(e)} onClick={() => (ending.value = dotted(e))}>{e.name}</button>
+                    ))}
+                </div>
+                <div class="sheet" tabIndex={0} role="region" aria-label="Preview">
+                    {wrong.value && <p class="note bad" role="alert"><Icon name="crossed" />{wrong.value}</p>}
+                    {looked.value && looked.value.urls.length > 0 ? (
+                        <>
+                            <div class="spread"><b>{looked.value.urls.length > 1 ? `Sheet ${looked.value.at + 1} of ${looked.value.names.length}` : looked.value.names[0]}</b></div>
+                            <div class="paper"><img src={looked.value.urls[looked.value.at]} alt={`What ${looked.value.names[looked.value.at]} holds`} /></div>
+                            {looked.value.urls.length > 1 && (
+                                <div class="thumbs">
+                                    {looked.value.urls.map((u, k) => <button key={u} type="button" aria-label={`Sheet ${k + 1}`} aria-current={k === looked.value!.at ? "true" : undefined} onClick={() => (looked.value = { ...looked.value!, at: k })}><img src={u} alt="" /></button>)}
+                                </div>
+                            )}
+                        </>
+                    ) : (
+                        <div class="empty"><span>{busy.value ? "Making it." : ending.value === "picture" ? "The views as they are now, as one PNG." : (exporter?.doc ?? "")}</span></div>
+                    )}
+                </div>
+                <div class="settings">
+                    {exporter && (
+                        <Section title={exporter.name} aside={ending.value}>
+                            <p class="small muted" style={{ marginBottom: "8px" }}>{exporter.doc}</p>
+                            {states.length > 1 && <Row label="State">{(id) => <Choice id={id} value={state.value || exporter.default_state} options={states.map((s) => ({ value: s, title: s.charAt(0).toUpperCase() + s.slice(1) }))} onChange={(s) => (state.value = s)} />}</Row>}
+                            {isCut(ending.value) && (
+                                <>
+                                    <Row label="Sheet">{(id) => <div class="field"><input id={id} type="text" placeholder="one for all" value={options.value.sheet} onChange={(e) => (options.value = { ...options.value, sheet: e.currentTarget.value.replace(/[×*\s]+/g, "x") })} /><span class="unit">mm</span></div>}</Row>
+                                    <NumberRow label="Kerf" title="Full width of the beam" value={options.value.kerf} unit="mm" documentUnit="mm" lo={0} hi={20} onChange={(kerf) => (options.value = { ...options.value, kerf })} />
+                                </>
+                            )}
+                        </Section>
+                    )}
+                    <Section title="Design">
+                        <table class="figures">
+                            <tbody>
+                                <tr><th scope="row">Panels</th><td>{count(shell?.linkage.panels ?? 0)}</td></tr>
+                                <tr><th scope="row">Unit</th><td>{documentState.value?.unit}</td></tr>
+                                <tr><th scope="row">Can it deploy?</th><td>{report.value?.verdict.word ?? "–"}</td></tr>
+                                <tr><th scope="row">State</th><td>{exact ? "Exact" : "Not exact yet"}</td></tr>
+                            </tbody>
+                        </table>
+                        {!exact && <p class="note warning" style={{ marginTop: "8px" }}><Icon name="triangle" size={16} />Not exact yet. Finish first if it is to be built.</p>}
+                    </Section>
+                </div>
+            </div>
+        </Dialog>
+    );
+}
