@@ -1,5 +1,5 @@
 // Conformal flattening: from arrays in memory to UV, and from an OBJ file to an OBJ file with UV, median of five.
-//     bench_flatten [PATH/TO/bff-command-line]
+//     bench_flatten [--json FILE] [PATH/TO/bff-command-line]
 // With the path to the command line of boundary-first-flattening, that program does the second job in turn with ours.
 #include "ax/flatten.h"
 #include "base/clock.h"
@@ -8,6 +8,7 @@
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -127,7 +128,7 @@ static double median(double* seconds)
     return seconds[ROUNDS / 2];
 }
 
-static void bench(int rings, char* program)
+static void bench(int rings, char* program, FILE* json)
 {
     char folder[] = "/tmp/bench-flatten-XXXXXX", input[64], output[64];
     if (!mkdtemp(folder))
@@ -143,13 +144,17 @@ static void bench(int rings, char* program)
         if (program)
             other[k] = other_program(program, input, output);
     }
-    double ours = median(file);
-    printf("%9d triangles: memory to UV %6.3f s, file to UV %6.3f s (reading %.3f)", mesh.face_count, median(memory),
-           ours, median(reading));
+    double ours = median(file), in = median(memory);
+    printf("%9d triangles: memory to UV %6.3f s, file to UV %6.3f s (reading %.3f)", mesh.face_count, in, ours,
+           median(reading));
+    fprintf(json, "{\"triangles\": %d, \"memory_to_uv_s\": %.6g, \"file_to_uv_s\": %.6g, \"reading_s\": %.6g",
+            mesh.face_count, in, ours, median(reading));
     if (program) {
         double theirs = median(other);
         printf("; boundary-first-flattening %6.3f s, %.1f times as long", theirs, theirs / ours);
+        fprintf(json, ", \"boundary_first_flattening_s\": %.6g", theirs);
     }
+    fprintf(json, "}");
     printf("\n");
     unlink(input);
     unlink(output);
@@ -159,10 +164,21 @@ static void bench(int rings, char* program)
 
 int main(int argc, char** argv)
 {
+    const char* json = "/dev/null";
+    if (argc > 2 && strcmp(argv[1], "--json") == 0)
+        json = argv[2], argc -= 2, argv += 2;
     char* program = argc > 1 ? argv[1] : NULL;
     if (!program || access(program, X_OK))
         printf("No path to an executable bff-command-line was given: timing ours alone.\n"), program = NULL;
-    bench(129, program);
-    bench(408, program);
+    FILE* file = fopen(json, "w");
+    if (!file)
+        die("cannot write the JSON file");
+    fprintf(file, "[");
+    bench(129, program, file);
+    fprintf(file, ",\n");
+    bench(408, program, file);
+    fprintf(file, "]\n");
+    if (fclose(file))
+        die("cannot write the JSON file");
     return 0;
 }

@@ -1,6 +1,6 @@
 // The main job by stages and sizes: a target surface to a linkage deployed by inflation and by gravity.
 //
-//   bench_pipeline SURFACE [TRIANGLES ...]        default 600 2500 10000
+//   bench_pipeline [--json FILE] SURFACE [TRIANGLES ...]        default 600 2500 10000
 //
 // Seconds by stage, medians of three, and the growth exponent between neighbouring sizes.
 #include "ax/design.h"
@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { REPEATS = 3, MOST_SIZES = 16 };
 
@@ -25,10 +26,20 @@ static double median(double* seconds)
 
 int main(int argc, char** argv)
 {
+    const char* json = "/dev/null";
+    if (argc > 2 && strcmp(argv[1], "--json") == 0)
+        json = argv[2], argc -= 2, argv += 2;
     if (argc < 2) {
-        fprintf(stderr, "usage: bench_pipeline SURFACE [TRIANGLES ...]\n");
+        fprintf(stderr, "usage: bench_pipeline [--json FILE] SURFACE [TRIANGLES ...]\n");
         return 2;
     }
+    FILE* file = fopen(json, "w");
+    if (!file) {
+        perror(json);
+        return 1;
+    }
+    fprintf(file, "[");
+    const char* separator = "";
     int sizes[MOST_SIZES] = {600, 2500, 10000}, count = 3;
     for (int k = 2; k < argc && k - 2 < MOST_SIZES; ++k)
         sizes[k - 2] = atoi(argv[k]), count = k - 1;
@@ -68,13 +79,28 @@ int main(int argc, char** argv)
             printf("%-9s %10d %9.3f %9.3f %9.3f %9.3f  %d/%d/%d", ax_load_kind_name((ax_load_kind)kind), triangles,
                    median(flatten), median(joint), median(deploy), now, report.joint_steps, report.projective_steps,
                    report.newton_steps);
-            if (s)
-                printf("  %.2f", log(now / before) / log((double)triangles / smaller));
+            fprintf(file,
+                    "%s\n  {\"load\": \"%s\", \"triangles\": %d, \"flatten_s\": %.6g, \"joint_s\": %.6g, "
+                    "\"deploy_s\": %.6g, \"total_s\": %.6g",
+                    separator, ax_load_kind_name((ax_load_kind)kind), triangles, median(flatten), median(joint),
+                    median(deploy), now);
+            separator = ",";
+            if (s) {
+                double exponent = log(now / before) / log((double)triangles / smaller);
+                printf("  %.2f", exponent);
+                fprintf(file, ", \"exponent\": %.3f", exponent);
+            }
+            fprintf(file, "}");
             printf("\n");
             fflush(stdout);
             before = now, smaller = triangles;
         }
     }
     ax_mesh_free(&target);
+    fprintf(file, "\n]\n");
+    if (fclose(file)) {
+        perror(json);
+        return 1;
+    }
     return 0;
 }

@@ -1,9 +1,10 @@
-// The projective solver against ShapeOp on the same problems, in one process, in turn.
+// The projective solver against ShapeOp on the same problems: init, time per iteration, errors, memory, time to exactness.
 //
-//   bench_solver [--shapeop libShapeOp.so] [--json FILE] [--largest N] [--repeats R]
+//   bench_solver [--shapeop libShapeOp.so] [--json FILE] [--repeats R] [--iterations N] [PROBLEM ...]
 //
-// Plain local/global iterations in double precision. ShapeOp (the library of Bouaziz et al. and Deuss et al. 2015) is loaded
-// from the shared library given, built from its own sources with -O3 -march=native and OpenMP, and left out without it.
+// A problem is dyn:N or static:N (6 N^2 triangles) or a file. Plain local/global iterations in double precision, in turn with
+// ShapeOp (the library of Bouaziz et al. and Deuss et al. 2015), loaded from a library built from its own sources with -O3
+// -march=native and OpenMP, and left out without it. Every measurement is a process of its own, so that memory is that of one job.
 #include "kagome.h"
 
 #include "base/clock.h"
@@ -14,10 +15,20 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-enum { INNER = 10, MOST_REPEATS = 25, MARKS = 5 };
+enum {
+    CHUNK = 10, // iterations between two looks at the error: whole time steps
+    MOST_REPEATS = 25,
+    MOST_PROBLEMS = 32,
+    MOST_CLASSES = 16,
+    MARKS = 5,
+    MOST_COMPARED = 310000, // triangles up to which ShapeOp is run
+};
 static const int marks[MARKS] = {10, 30, 100, 300, 1000};
+static const double WORK = 1e8; // triangles x iterations that errors are followed for
 
 // The part of ShapeOp's C interface that is needed.
 typedef struct shapeop {
@@ -37,7 +48,7 @@ static bool load_shapeop(const char* path, shapeop* api)
 {
     void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!library) {
-        printf("ShapeOp is left out: %s\n", dlerror());
+        fprintf(stderr, "ShapeOp is left out: %s\n", dlerror());
         return false;
     }
     static const char* const names[] = {"create",    "delete",    "init",          "initDynamic",    "solve",
@@ -48,79 +59,108 @@ static bool load_shapeop(const char* path, shapeop* api)
         snprintf(name, sizeof name, "shapeop_%s", names[k]);
         slots[k] = dlsym(library, name);
         if (!slots[k]) {
-            printf("ShapeOp is left out: %s has no %s\n", path, name);
+            fprintf(stderr, "ShapeOp is left out: %s has no %s\n", path, name);
             return false;
         }
     }
     return true;
 }
 
-static void* make_shapeop(const shapeop* api, const kagome* k, bool dynamic)
+static void* make_shapeop(const shapeop* api, const kagome* k)
 {
     void* solver = api->create();
     api->set_points(solver, k->regular[0], k->vertices); // constraints learn from the regular patch
     for (int e = 0; e < k->edges; ++e) {
-        int id = api->add_constraint(solver, "EdgeStrain", k->edge[e], 2, 1);
+        int id = api->add_constraint(solver, "EdgeStrain", k->edge[e], 2, k->stiffness[e] * k->rest[e] * k->rest[e]);
         api->edit_constraint(solver, "EdgeStrain", id, (double[]){k->rest[e], 1, 1}, 3);
     }
     for (int f = 0; f < k->fixed; ++f)
-        api->add_constraint(solver, "Closeness", &k->fixed_vertex[f], 1, 100);
-    if (!dynamic)
+        api->add_constraint(solver, "Closeness", &k->fixed_vertex[f], 1, k->w_fixed);
+    if (!k->dynamic)
         for (int h = 0; h < k->hexagons; ++h)
-            api->add_constraint(solver, "Circle", k->hexagon[h], 6, 0.1);
+            api->add_constraint(solver, "Circle", k->hexagon[h], 6, k->w_circle);
     else
-        api->add_gravity(solver, (double[]){0, 0, -0.02 / (2 * k->n)});
+        api->add_gravity(solver, (double*)k->gravity);
     api->set_points(solver, k->start[0], k->vertices);
     return solver;
 }
 
-// The same energy: edges of rest length l weigh 1 / l^2, since ShapeOp's rows are relative and ours absolute.
-static ax_solver* make_ours(const kagome* k, bool dynamic, ax_pool* pool)
+static void init_shapeop(const shapeop* api, void* solver, const kagome* k)
 {
-    ax_solver* solver = ax_solver_make(k->vertices, (const double(*)[3])k->regular, pool);
-    const ax_constraint_type* edge = ax_constraint_find("edge_length");
-    int length = ax_parameter_find(edge, "length")->offset, *points = AX_NEW(int, 2 * k->edges),
-        *which = AX_NEW(int, k->edges);
-    for (int grown = 0; grown < 2; ++grown) {
+    if (k->dynamic)
+        api->init_dynamic(solver, k->mass, k->damping, k->time_step);
+    else
+        api->init(solver);
+}
+
+static void die(const char* what)
+{
+    fprintf(stderr, "bench_solver: %s\n", what);
+    exit(1);
+}
+
+static void add_edges(ax_solver* solver, const kagome* k)
+{
+    const ax_constraint_type* type = ax_constraint_find("edge_length");
+    int length = ax_parameter_find(type, "length")->offset, *points = AX_NEW(int, 2 * k->edges), classes = 0;
+    double stiffness[MOST_CLASSES], *rest = AX_NEW(double, k->edges);
+    for (int e = 0; e < k->edges; ++e) { // groups have one weight each
+        int c = 0;
+        while (c < classes && stiffness[c] != k->stiffness[e])
+            ++c;
+        if (c == MOST_CLASSES)
+            die("more than 16 different stiffnesses");
+        if (c == classes)
+            stiffness[classes++] = k->stiffness[e];
+    }
+    for (int c = 0; c < classes; ++c) {
         int count = 0;
         for (int e = 0; e < k->edges; ++e)
-            if ((k->rest[e] > 1) == grown) {
+            if (k->stiffness[e] == stiffness[c]) {
                 points[2 * count] = k->edge[e][0], points[2 * count + 1] = k->edge[e][1];
-                which[count++] = e;
+                rest[count++] = k->rest[e];
             }
-        double l = k->rest[which[0]];
-        int group = ax_solver_add(solver, edge, 2, count, points, 1 / (l * l), NULL);
-        for (int c = 0; c < count; ++c)
-            ax_solver_set(solver, group, c, length, k->rest[which[c]]);
+        int group = ax_solver_add(solver, type, 2, count, points, stiffness[c], NULL);
+        ax_solver_set_all(solver, group, length, 1, rest);
     }
-    const ax_constraint_type* close = ax_constraint_find("closeness");
-    ax_solver_add(solver, close, 1, k->fixed, k->fixed_vertex, 100, NULL); // learns its target from the places
-    if (dynamic)
-        ax_solver_set_dynamics(solver, &(ax_dynamics){1, 1, 0.95, {0, 0, -0.02 / (2 * k->n)}});
-    else
-        ax_solver_add(solver, ax_constraint_find("circle"), 6, k->hexagons, k->hexagon[0], 0.1, NULL);
-    ax_solver_set_places(solver, (const double(*)[3])k->start);
     ax_free(points);
-    ax_free(which);
+    ax_free(rest);
+}
+
+// The same energy as ShapeOp's, or the edges and the rim alone, to be met exactly.
+static ax_solver* make_ours(const kagome* k, ax_pool* pool, bool exact)
+{
+    const double(*places)[3] = (const double(*)[3])(k->regular ? k->regular : k->start);
+    ax_solver* solver = ax_solver_make(k->vertices, places, pool);
+    ax_solver_set_places(solver, (const double(*)[3])k->start);
+    add_edges(solver, k);
+    ax_solver_add(solver, ax_constraint_find("closeness"), 1, k->fixed, k->fixed_vertex, k->w_fixed, NULL);
+    if (exact)
+        ax_solver_use_multipliers(solver, true);
+    else if (k->dynamic) {
+        const double* g = k->gravity;
+        ax_solver_set_dynamics(solver, &(ax_dynamics){k->mass, k->time_step, k->damping, {g[0], g[1], g[2]}});
+    } else
+        ax_solver_add(solver, ax_constraint_find("circle"), 6, k->hexagons, k->hexagon[0], k->w_circle, NULL);
     return solver;
 }
 
-static void advance(ax_solver* solver, bool dynamic, int iterations)
+static void advance(ax_solver* solver, const kagome* k, int iterations)
 {
-    if (!dynamic)
+    if (!k->dynamic)
         ax_solver_iterate(solver, iterations);
     else
-        for (int step = 0; step < iterations / INNER; ++step)
-            ax_solver_step(solver, INNER);
+        for (int step = 0; step < iterations / k->inner; ++step)
+            ax_solver_step(solver, k->inner);
 }
 
-static void advance_shapeop(const shapeop* api, void* solver, bool dynamic, int iterations)
+static void advance_shapeop(const shapeop* api, void* solver, const kagome* k, int iterations)
 {
-    if (!dynamic)
+    if (!k->dynamic)
         api->solve(solver, (unsigned)iterations);
     else
-        for (int step = 0; step < iterations / INNER; ++step)
-            api->solve(solver, INNER);
+        for (int step = 0; step < iterations / k->inner; ++step)
+            api->solve(solver, (unsigned)k->inner);
 }
 
 static int ascending(const void* a, const void* b)
@@ -171,184 +211,387 @@ static double read_bandwidth(ax_pool* pool)
     return best;
 }
 
+// What one measurement sends to the process that asked. Zero: not measured.
 typedef struct row {
-    const char* mode;
-    int triangles, threads;
-    double init, ms, local, global, bytes_per_triangle, entries, read_share;
+    int threads;
+    double init, factorise, ms, local, global, entries, bytes_per_solve, bandwidth;
     double shapeop_init, shapeop_ms;
     double max[MARKS], rms[MARKS], shapeop_max[MARKS], shapeop_rms[MARKS];
+    double to_milli;                        // seconds of plain iterations, init included, to edge error 1e-3
+    double exact_milli, exact, exact_error; // the same with multipliers, to 1e-3 and 1e-10; the last error
+    int exact_iterations;
+    double peak, shapeop_peak, before; // bytes: largest resident set, and that of the problem alone
 } row;
 
-// Iterations that one timing holds: about a fifth of a second, whole time steps.
-static int batch_for(int triangles)
+typedef struct job {
+    const kagome* k;
+    const shapeop* api; // NULL: ours alone
+    int threads, repeats, deepest;
+} job;
+
+// Iterations that one timing holds: about a tenth of a second, whole time steps.
+static int batch_for(const kagome* k)
 {
-    int batch = (int)(2e6 / triangles);
-    batch = batch < INNER ? INNER : (batch > 200 ? 200 : batch);
-    return batch / INNER * INNER;
+    int batch = (int)(2e6 / k->triangles);
+    batch = batch < k->inner ? k->inner : (batch > 200 ? 200 : batch);
+    return batch / k->inner * k->inner;
 }
 
-static row measure(const kagome* k, bool dynamic, ax_pool* pool, const shapeop* api, int repeats, int deepest,
-                   double bandwidth)
+static ax_solver* prepared(const kagome* k, ax_pool* pool, bool exact)
 {
-    row r = {.mode = dynamic ? "dyn" : "static", .triangles = k->triangles, .threads = ax_pool_threads(pool)};
-    double ours[MOST_REPEATS], theirs[MOST_REPEATS];
-    double(*x)[3] = ax_alloc((size_t)k->vertices, sizeof *x);
-    int batch = batch_for(k->triangles), done = 0, mark = 0;
+    ax_solver* solver = make_ours(k, pool, exact);
+    if (!ax_solver_prepare(solver))
+        die("the matrix is not positive definite");
+    return solver;
+}
 
-    ax_solver* solver = make_ours(k, dynamic, pool);
-    double start = ax_seconds(); // analyse and factorise, as ShapeOp's init does
-    if (!ax_solver_prepare(solver)) {
-        fprintf(stderr, "the matrix is not positive definite\n");
-        exit(1);
-    }
-    r.init = ax_seconds() - start;
-    void* other = NULL;
-    if (api) {
-        other = make_shapeop(api, k, dynamic);
-        start = ax_seconds();
-        if (dynamic)
-            api->init_dynamic(other, 1, 0.95, 1);
-        else
-            api->init(other);
-        r.shapeop_init = ax_seconds() - start;
-    }
-    // the same iterations on both, in turn: errors at the marks, then timings
-    for (; mark < MARKS && marks[mark] <= deepest; ++mark) {
-        advance(solver, dynamic, marks[mark] - done);
-        ax_solver_get_places(solver, x);
-        kagome_error(k, (const double(*)[3])x, &r.max[mark], &r.rms[mark]);
-        if (other) {
-            advance_shapeop(api, other, dynamic, marks[mark] - done);
-            api->get_points(other, x[0], k->vertices);
-            kagome_error(k, (const double(*)[3])x, &r.shapeop_max[mark], &r.shapeop_rms[mark]);
+static void time_init(const job* j, ax_pool* pool, row* r)
+{
+    double ours[MOST_REPEATS], factorise[MOST_REPEATS], theirs[MOST_REPEATS];
+    for (int repeat = 0; repeat < j->repeats; ++repeat) {
+        ax_solver* solver = prepared(j->k, pool, false);
+        ours[repeat] = ax_solver_count(solver).seconds_prepare;
+        factorise[repeat] = ax_solver_count(solver).seconds_factorise;
+        ax_solver_free(solver);
+        if (j->api) {
+            void* other = make_shapeop(j->api, j->k);
+            double start = ax_seconds();
+            init_shapeop(j->api, other, j->k);
+            theirs[repeat] = ax_seconds() - start;
+            j->api->delete (other);
         }
-        done = marks[mark];
+    }
+    r->init = median(ours, j->repeats);
+    r->factorise = median(factorise, j->repeats);
+    if (j->api)
+        r->shapeop_init = median(theirs, j->repeats);
+}
+
+// Init, the same iterations on both in turn with their errors, then timings in turn.
+static row run_plain(const job* j)
+{
+    const kagome* k = j->k;
+    ax_pool* pool = ax_pool_make(j->threads);
+    row r = {.threads = ax_pool_threads(pool), .bandwidth = read_bandwidth(pool)};
+    time_init(j, pool, &r);
+    double(*x)[3] = ax_alloc((size_t)k->vertices, sizeof *x), ours[MOST_REPEATS], theirs[MOST_REPEATS];
+    ax_solver* solver = prepared(k, pool, false);
+    void* other = j->api ? make_shapeop(j->api, k) : NULL;
+    if (other)
+        init_shapeop(j->api, other, k);
+    double spent = r.init, start;
+    int at = 0;
+    for (int done = 0; done < j->deepest;) {
+        start = ax_seconds();
+        advance(solver, k, CHUNK);
+        spent += ax_seconds() - start;
+        done += CHUNK;
+        if (done > marks[at])
+            ++at;
+        double max, rms;
+        ax_solver_get_places(solver, x);
+        kagome_error(k, (const double(*)[3])x, &max, &rms);
+        if (max <= 1e-3 && r.to_milli == 0)
+            r.to_milli = spent;
+        if (done == marks[at]) {
+            r.max[at] = max, r.rms[at] = rms;
+            if (other) {
+                advance_shapeop(j->api, other, k, marks[at] - (at ? marks[at - 1] : 0));
+                j->api->get_points(other, x[0], k->vertices);
+                kagome_error(k, (const double(*)[3])x, &r.shapeop_max[at], &r.shapeop_rms[at]);
+            }
+        }
     }
     ax_solver_counters before = ax_solver_count(solver);
-    for (int repeat = 0; repeat < repeats; ++repeat) {
+    int batch = batch_for(k);
+    for (int repeat = 0; repeat < j->repeats; ++repeat) {
         start = ax_seconds();
-        advance(solver, dynamic, batch);
+        advance(solver, k, batch);
         ours[repeat] = (ax_seconds() - start) / batch * 1e3;
         if (other) {
             start = ax_seconds();
-            advance_shapeop(api, other, dynamic, batch);
+            advance_shapeop(j->api, other, k, batch);
             theirs[repeat] = (ax_seconds() - start) / batch * 1e3;
         }
     }
     ax_solver_counters after = ax_solver_count(solver);
     int iterations = after.iterations - before.iterations;
-    r.ms = median(ours, repeats);
+    r.ms = median(ours, j->repeats);
     r.local = (after.seconds_local - before.seconds_local) / iterations * 1e3;
     r.global = (after.seconds_global - before.seconds_global) / iterations * 1e3;
     r.entries = after.factor_entries;
-    r.bytes_per_triangle = (double)after.bytes / k->triangles;
-    r.read_share = (double)after.bytes_per_solve / (r.global * 1e-3) / bandwidth;
-    if (other) {
-        r.shapeop_ms = median(theirs, repeats);
-        api->delete (other);
-    }
-    ax_solver_free(solver);
-    ax_free(x);
+    r.bytes_per_solve = (double)after.bytes_per_solve;
+    if (other)
+        r.shapeop_ms = median(theirs, j->repeats);
     return r;
 }
 
-static void print_row(const row* r)
+// Edges and rim by multipliers, from the start of the problem, until all edges are right to 1e-10.
+static row run_exact(const job* j)
 {
-    printf("%-6s %9d %d  %8.4f %8.3f %8.3f %8.3f %8.2fM %7.0f %5.0f %%", r->mode, r->triangles, r->threads, r->init,
-           r->ms, r->local, r->global, r->entries / 1e6, r->bytes_per_triangle, 100 * r->read_share);
-    if (r->shapeop_ms > 0)
-        printf("  | %8.4f %8.3f  %5.1fx %5.1fx", r->shapeop_init, r->shapeop_ms, r->shapeop_ms / r->ms,
-               r->shapeop_init / r->init);
+    const double patience = 60; // seconds
+    const kagome* k = j->k;
+    ax_pool* pool = ax_pool_make(j->threads);
+    row r = {.threads = ax_pool_threads(pool), .exact_error = INFINITY};
+    double(*x)[3] = ax_alloc((size_t)k->vertices, sizeof *x), rms;
+    ax_solver* solver = prepared(k, pool, true);
+    double spent = ax_solver_count(solver).seconds_prepare;
+    while (r.exact_error > 1e-10 && spent < patience) {
+        double start = ax_seconds();
+        ax_solver_iterate(solver, CHUNK);
+        spent += ax_seconds() - start;
+        r.exact_iterations += CHUNK;
+        ax_solver_get_places(solver, x);
+        kagome_error(k, (const double(*)[3])x, &r.exact_error, &rms);
+        if (r.exact_error <= 1e-3 && r.exact_milli == 0)
+            r.exact_milli = spent;
+    }
+    if (r.exact_error <= 1e-10)
+        r.exact = spent;
+    return r;
+}
+
+static double resident_peak(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)usage.ru_maxrss * 1024;
+}
+
+static row run_memory(const job* j)
+{
+    row r = {.before = resident_peak()};
+    ax_pool* pool = ax_pool_make(0);
+    advance(prepared(j->k, pool, false), j->k, j->k->inner);
+    r.peak = resident_peak();
+    return r;
+}
+
+static row run_shapeop_memory(const job* j)
+{
+    void* solver = make_shapeop(j->api, j->k);
+    init_shapeop(j->api, solver, j->k);
+    advance_shapeop(j->api, solver, j->k, j->k->inner);
+    return (row){.shapeop_peak = resident_peak()};
+}
+
+// Runs a job in a child that ends with it.
+static row in_child(row (*run)(const job*), const job* j)
+{
+    int ends[2], status;
+    row r;
+    fflush(NULL);
+    if (pipe(ends))
+        die("no pipe");
+    pid_t child = fork();
+    if (child < 0)
+        die("no process");
+    if (child == 0) {
+        r = run(j);
+        _exit(write(ends[1], &r, sizeof r) != sizeof r);
+    }
+    close(ends[1]);
+    bool sound = read(ends[0], &r, sizeof r) == sizeof r;
+    close(ends[0]);
+    if (waitpid(child, &status, 0) != child || status || !sound)
+        die("a measurement failed");
+    return r;
+}
+
+typedef struct result {
+    char name[64];
+    int triangles;
+    bool dynamic;
+    row one, all, exact, memory;
+} result;
+
+static result measure(const char* name, const kagome* k, const shapeop* api, int repeats, int iterations)
+{
+    int deepest = (int)fmin(iterations, WORK / k->triangles) / CHUNK * CHUNK;
+    if (k->triangles > MOST_COMPARED || !k->regular)
+        api = NULL;
+    job alone = {k, NULL, 1, repeats, CHUNK}, side = {k, api, 0, repeats, deepest < CHUNK ? CHUNK : deepest};
+    result r = {.triangles = k->triangles, .dynamic = k->dynamic};
+    const char* base = strrchr(name, '/');
+    snprintf(r.name, sizeof r.name, "%s", base ? base + 1 : name);
+    r.memory = in_child(run_memory, &side);
+    if (api)
+        r.memory.shapeop_peak = in_child(run_shapeop_memory, &side).shapeop_peak;
+    r.one = in_child(run_plain, &alone);
+    r.all = in_child(run_plain, &side);
+    r.exact = in_child(run_exact, &side);
+    return r;
+}
+
+static void print_result(const result* r)
+{
+    const row* rows[] = {&r->one, &r->all};
+    printf("%s, %d triangles: peak %.0f MB, %.0f bytes a triangle beside the problem", r->name, r->triangles,
+           r->memory.peak / 1e6, (r->memory.peak - r->memory.before) / r->triangles);
+    if (r->memory.shapeop_peak > 0)
+        printf("; ShapeOp %.0f MB", r->memory.shapeop_peak / 1e6);
     printf("\n");
-    for (int m = 0; m < MARKS && r->rms[m] > 0; ++m) {
-        printf("       after %4d: edge error max %.6e rms %.6e", marks[m], r->max[m], r->rms[m]);
-        if (r->shapeop_ms > 0)
-            printf(", ShapeOp differs by %.1e / %.1e", fabs(r->max[m] / r->shapeop_max[m] - 1),
-                   fabs(r->rms[m] / r->shapeop_rms[m] - 1));
+    for (int t = 0; t < 2; ++t) {
+        const row* a = rows[t];
+        printf("  %d thread%s  init %.4f s (analyse %.4f, factorise %.4f), %.3f ms an iteration (local %.3f, global "
+               "%.3f at "
+               "%.1f GB/s, %.0f %% of %.1f)\n",
+               a->threads, a->threads == 1 ? " " : "s", a->init, a->init - a->factorise, a->factorise, a->ms, a->local,
+               a->global, a->bytes_per_solve / a->global / 1e6, a->bytes_per_solve / a->global * 1e5 / a->bandwidth,
+               a->bandwidth / 1e9);
+        if (a->shapeop_ms > 0)
+            printf(
+                "             ShapeOp: init %.4f s, %.3f ms: ours %.2f of its init, %.1f times faster an iteration\n",
+                a->shapeop_init, a->shapeop_ms, a->init / a->shapeop_init, a->shapeop_ms / a->ms);
+    }
+    for (int m = 0; m < MARKS && r->all.rms[m] > 0; ++m) {
+        const row* a = &r->all;
+        printf("  after %4d: edge error max %.4e rms %.4e", marks[m], a->max[m], a->rms[m]);
+        if (a->shapeop_rms[m] > 0)
+            printf(", ShapeOp's differ by %.0e / %.0e", fabs(a->max[m] / a->shapeop_max[m] - 1),
+                   fabs(a->rms[m] / a->shapeop_rms[m] - 1));
         printf("\n");
     }
+    if (r->all.to_milli > 0)
+        printf("  edge error 1e-3 by plain iterations: %.3f s\n", r->all.to_milli);
+    printf("  by multipliers, edges and rim alone: ");
+    if (r->exact.exact_milli > 0)
+        printf("1e-3 in %.3f s, ", r->exact.exact_milli);
+    if (r->exact.exact > 0)
+        printf("1e-10 in %.3f s (%d iterations)\n", r->exact.exact, r->exact.exact_iterations);
+    else
+        printf("%.1e after %d iterations\n", r->exact.exact_error, r->exact.exact_iterations);
     fflush(stdout);
 }
 
-static void write_json(FILE* file, const row* rows, int count, double bandwidth[2])
+static void print_growth(const result* results, int count, FILE* json)
 {
-    fprintf(file, "{\"read_bandwidth\": [%.4g, %.4g], \"rows\": [", bandwidth[0], bandwidth[1]);
-    for (int k = 0; k < count; ++k) {
-        const row* r = rows + k;
-        fprintf(file,
-                "%s\n  {\"mode\": \"%s\", \"triangles\": %d, \"threads\": %d, \"init_s\": %.6g, \"ms\": %.6g, "
-                "\"local_ms\": %.6g, "
-                "\"global_ms\": %.6g, \"factor_entries\": %.0f, \"bytes_per_triangle\": %.0f, \"read_share\": %.3g, "
-                "\"shapeop_init_s\": %.6g, \"shapeop_ms\": %.6g, \"errors\": [",
-                k ? "," : "", r->mode, r->triangles, r->threads, r->init, r->ms, r->local, r->global, r->entries,
-                r->bytes_per_triangle, r->read_share, r->shapeop_init, r->shapeop_ms);
-        for (int m = 0; m < MARKS && r->rms[m] > 0; ++m)
-            fprintf(file, "%s[%d, %.9g, %.9g, %.9g, %.9g]", m ? ", " : "", marks[m], r->max[m], r->rms[m],
-                    r->shapeop_max[m], r->shapeop_rms[m]);
-        fprintf(file, "]}");
+    const char* separator = "";
+    fprintf(json, "], \"growth\": [");
+    for (int a = 0; a < count; ++a)
+        for (int b = a + 1; b < count; ++b) {
+            const result *x = results + a, *y = results + b;
+            if (x->dynamic != y->dynamic || y->triangles <= 2 * x->triangles)
+                continue;
+            double exponent = log(y->all.ms / x->all.ms) / log((double)y->triangles / x->triangles);
+            printf("growth of ms per iteration, %s to %s: exponent %.2f\n", x->name, y->name, exponent);
+            fprintf(json, "%s\n  {\"from\": \"%s\", \"to\": \"%s\", \"ms_exponent\": %.3f}", separator, x->name,
+                    y->name, exponent);
+            separator = ",";
+        }
+}
+
+static void write_row(FILE* file, const char* name, const row* r)
+{
+    fprintf(
+        file,
+        ",\n   \"%s\": {\"threads\": %d, \"init_s\": %.6g, \"analyse_s\": %.6g, \"factorise_s\": %.6g, \"ms\": %.6g, "
+        "\"local_ms\": %.6g, \"global_ms\": %.6g, \"factor_entries\": %.0f, \"bytes_per_solve\": %.0f, "
+        "\"read_bandwidth\": %.4g, \"read_share\": %.3g",
+        name, r->threads, r->init, r->init - r->factorise, r->factorise, r->ms, r->local, r->global, r->entries,
+        r->bytes_per_solve, r->bandwidth, r->bytes_per_solve / r->global * 1e3 / r->bandwidth);
+    if (r->shapeop_ms > 0)
+        fprintf(file, ", \"shapeop_init_s\": %.6g, \"shapeop_ms\": %.6g", r->shapeop_init, r->shapeop_ms);
+    if (r->to_milli > 0)
+        fprintf(file, ", \"plain_to_1e-3_s\": %.6g", r->to_milli);
+    fprintf(file, ", \"errors\": [");
+    for (int m = 0; m < MARKS && r->rms[m] > 0; ++m) {
+        fprintf(file, "%s{\"iterations\": %d, \"max\": %.9g, \"rms\": %.9g", m ? ", " : "", marks[m], r->max[m],
+                r->rms[m]);
+        if (r->shapeop_rms[m] > 0)
+            fprintf(file, ", \"shapeop_max\": %.9g, \"shapeop_rms\": %.9g", r->shapeop_max[m], r->shapeop_rms[m]);
+        fprintf(file, "}");
     }
-    fprintf(file, "\n]}\n");
+    fprintf(file, "]}");
+}
+
+static void write_result(FILE* file, const result* r, bool first)
+{
+    fprintf(file,
+            "%s\n  {\"problem\": \"%s\", \"mode\": \"%s\", \"triangles\": %d, \"peak_bytes\": %.0f, \"problem_bytes\": "
+            "%.0f",
+            first ? "" : ",", r->name, r->dynamic ? "dyn" : "static", r->triangles, r->memory.peak, r->memory.before);
+    if (r->memory.shapeop_peak > 0)
+        fprintf(file, ", \"shapeop_peak_bytes\": %.0f", r->memory.shapeop_peak);
+    write_row(file, "one_thread", &r->one);
+    write_row(file, "all_threads", &r->all);
+    fprintf(file, ",\n   \"multipliers\": {\"iterations\": %d, \"edge_error\": %.3g", r->exact.exact_iterations,
+            r->exact.exact_error);
+    if (r->exact.exact_milli > 0)
+        fprintf(file, ", \"to_1e-3_s\": %.6g", r->exact.exact_milli);
+    if (r->exact.exact > 0)
+        fprintf(file, ", \"to_1e-10_s\": %.6g", r->exact.exact);
+    fprintf(file, "}}");
+}
+
+static bool open_problem(const char* name, kagome* k)
+{
+    int n, used;
+    char mode[8];
+    if (sscanf(name, "%7[a-z]:%d%n", mode, &n, &used) == 2 && !name[used] && n >= 2 && n <= 500) {
+        *k = kagome_make(n, strcmp(mode, "dyn") == 0);
+        return true;
+    }
+    return kagome_read(name, k);
 }
 
 int main(int argc, char** argv)
 {
-    const char *library = NULL, *json = NULL;
-    int largest = 224, repeats = 5;
-    for (int k = 1; k < argc; k += 2) {
-        if (k + 1 == argc) {
-            fprintf(stderr, "%s wants a value\n", argv[k]);
-            return 2;
+    static const char* const usual[] = {"dyn:13",    "dyn:41",    "dyn:129",    "dyn:224",   "dyn:408",
+                                        "static:13", "static:41", "static:129", "static:408"};
+    const char *library = NULL, *json = "/dev/null", *names[MOST_PROBLEMS];
+    int repeats = 5, iterations = 1000, count = 0;
+    for (int k = 1; k < argc; ++k) {
+        const char* value = k + 1 < argc ? argv[k + 1] : NULL;
+        if (argv[k][0] != '-' && count < MOST_PROBLEMS) {
+            names[count++] = argv[k];
+            continue;
         }
-        if (strcmp(argv[k], "--shapeop") == 0)
-            library = argv[k + 1];
-        else if (strcmp(argv[k], "--json") == 0)
-            json = argv[k + 1];
-        else if (strcmp(argv[k], "--largest") == 0)
-            largest = atoi(argv[k + 1]);
-        else if (strcmp(argv[k], "--repeats") == 0)
-            repeats = atoi(argv[k + 1]) < MOST_REPEATS ? atoi(argv[k + 1]) : MOST_REPEATS;
+        if (value && strcmp(argv[k], "--shapeop") == 0)
+            library = value;
+        else if (value && strcmp(argv[k], "--json") == 0)
+            json = value;
+        else if (value && strcmp(argv[k], "--repeats") == 0 && atoi(value) > 0 && atoi(value) <= MOST_REPEATS)
+            repeats = atoi(value);
+        else if (value && strcmp(argv[k], "--iterations") == 0 && atoi(value) > 0)
+            iterations = atoi(value);
         else {
             fprintf(stderr,
-                    "usage: bench_solver [--shapeop libShapeOp.so] [--json FILE] [--largest N] [--repeats R]\n");
+                    "usage: bench_solver [--shapeop libShapeOp.so] [--json FILE] [--repeats R (1-%d)] "
+                    "[--iterations N] [dyn:N | static:N | FILE ...]\n",
+                    MOST_REPEATS);
             return 2;
         }
+        ++k;
     }
+    if (!count)
+        for (; (size_t)count < sizeof usual / sizeof *usual; ++count)
+            names[count] = usual[count];
     shapeop api;
     bool compare = library && load_shapeop(library, &api);
     if (!library)
-        printf("ShapeOp is left out: give its shared library with --shapeop\n");
-    ax_pool* pools[2] = {ax_pool_make(1), ax_pool_make(0)};
-    double bandwidth[2] = {read_bandwidth(pools[0]), read_bandwidth(pools[1])};
-    printf("%ld cores; reads %.1f GB/s on one thread, %.1f on %d\n", sysconf(_SC_NPROCESSORS_ONLN), bandwidth[0] / 1e9,
-           bandwidth[1] / 1e9, ax_pool_threads(pools[1]));
-    printf("mode   triangles threads init s ms/iter    local   global  entries  B/tri  read share | ShapeOp init, ms, "
-           "speed, init\n");
-
-    static const int sizes[] = {13, 41, 129, 224, 408};
-    row rows[64];
-    int count = 0;
-    for (int mode = 0; mode < 2; ++mode)
-        for (size_t s = 0; s < sizeof sizes / sizeof *sizes && sizes[s] <= largest; ++s) {
-            if (mode == 1 && sizes[s] > 129)
-                continue; // the static problem asks 100,000 triangles at most
-            kagome k = kagome_make(sizes[s], mode == 1);
-            for (int t = 0; t < 2; ++t) { // one thread alone; all of them beside ShapeOp, which takes all too
-                rows[count] = measure(&k, mode == 0, pools[t], t && compare && sizes[s] <= 224 ? &api : NULL, repeats,
-                                      k.triangles > 50000 ? 30 : 300, bandwidth[t]);
-                print_row(&rows[count++]);
-            }
-            kagome_free(&k);
-        }
-    if (json) {
-        FILE* file = fopen(json, "w");
-        if (!file) {
-            perror(json);
-            return 1;
-        }
-        write_json(file, rows, count, bandwidth);
-        fclose(file);
+        fprintf(stderr, "ShapeOp is left out: give its shared library with --shapeop\n");
+    FILE* file = fopen(json, "w");
+    if (!file) {
+        perror(json);
+        return 1;
     }
-    for (int t = 0; t < 2; ++t)
-        ax_pool_free(pools[t]);
+    result results[MOST_PROBLEMS];
+    fprintf(file, "{\"problems\": [");
+    for (int p = 0; p < count; ++p) {
+        kagome k;
+        if (!open_problem(names[p], &k))
+            return 3;
+        results[p] = measure(names[p], &k, compare ? &api : NULL, repeats, iterations);
+        print_result(results + p);
+        write_result(file, results + p, p == 0);
+        kagome_free(&k);
+    }
+    print_growth(results, count, file);
+    fprintf(file, "\n]}\n");
+    if (fclose(file)) {
+        perror(json);
+        return 1;
+    }
     return 0;
 }

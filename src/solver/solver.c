@@ -576,7 +576,9 @@ static bool factorise(ax_solver* s)
         ++s->counters.analyses;
         ax_free(order);
     }
+    double start = ax_seconds();
     bool sound = ax_panels_factor(s->panels, &matrix, s->pool);
+    s->counters.seconds_factorise += ax_seconds() - start;
     ++s->counters.factorisations;
     s->values_changed = !sound;
     ax_sparse_free(&matrix);

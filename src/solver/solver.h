@@ -154,6 +154,6 @@ typedef struct ax_solver_counters {
     size_t bytes;                         // held by the solver
     size_t bytes_per_solve;               // read by one global solve
     double seconds_local, seconds_global; // since the solver was made
-    double seconds_prepare;
+    double seconds_prepare, seconds_factorise; // the latter within the former
 } ax_solver_counters;
 ax_solver_counters ax_solver_count(const ax_solver* solver);
