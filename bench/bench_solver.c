@@ -329,7 +329,7 @@ static row run_plain(const job* j)
 // Edges and rim by multipliers, from the start of the problem, until all edges are right to 1e-10.
 static row run_exact(const job* j)
 {
-    const double patience = 60; // seconds
+    const double patience = 100; // seconds
     const kagome* k = j->k;
     ax_pool* pool = ax_pool_make(j->threads);
     row r = {.threads = ax_pool_threads(pool), .exact_error = INFINITY};

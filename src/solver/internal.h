@@ -74,7 +74,7 @@ struct ax_solver {
     ax_panels* panels;
     ax_dynamics dynamics;
     double load_factor, cap;
-    bool dynamic, multipliers;
+    bool dynamic, multipliers, multiplied; // multiplied: some multiplier may not be zero
     bool pattern_changed, values_changed, rows_changed, dead_changed;
     int active_group, active_load, active_class; // what the running tasks work on
     bool tallying, measuring;

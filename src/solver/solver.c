@@ -88,8 +88,7 @@ int ax_solver_add(ax_solver* s, const ax_constraint_type* type, int points_each,
     g->e = make_elements(points_each, count, points, type->pattern == AX_ROWS_EDGES ? g->rows : points_each);
     size_t blocks = (size_t)g->e.blocks, rows = (size_t)g->rows;
     g->parameter = ax_alloc_aligned(blocks * (size_t)(type->lanes ? type->lanes : 1), sizeof *g->parameter);
-    g->dual = ax_alloc_aligned(blocks * rows, sizeof *g->dual);
-    memset(g->dual, 0, blocks * rows * sizeof *g->dual);
+    g->dual = ax_calloc(blocks * rows, sizeof *g->dual); // the system gives such memory when it is first written
     for (int b = 0; b < g->e.blocks; ++b) {
         ax_lane3 x[AX_MOST_POINTS];
         ax_lane* block = g->parameter + (size_t)b * (size_t)type->lanes;
@@ -277,11 +276,12 @@ void ax_solver_set_dynamics(ax_solver* s, const ax_dynamics* dynamics)
 void ax_solver_use_multipliers(ax_solver* s, bool use)
 {
     s->multipliers = use;
+    s->multiplied = s->multiplied || use;
 }
 
 void ax_solver_reset_multipliers(ax_solver* s)
 {
-    for (int k = 0; k < s->group_count; ++k) {
+    for (int k = 0; k < s->group_count && s->multiplied; ++k) {
         group* g = s->groups + k;
         memset(g->dual, 0, (size_t)g->e.blocks * (size_t)g->rows * sizeof *g->dual);
     }
@@ -323,6 +323,7 @@ void ax_solver_get_multipliers(const ax_solver* s, double* out)
 
 void ax_solver_set_multipliers(ax_solver* s, const double* from)
 {
+    s->multiplied = true;
     for (int k = 0; k < s->group_count; ++k)
         for (int c = 0; c < s->groups[k].e.count; ++c)
             for (int r = 0; r < s->groups[k].rows; ++r)
@@ -488,7 +489,8 @@ static void sort_all(ax_solver* s)
         group* g = s->groups + k;
         int* was = sort_elements(s, &g->e);
         g->parameter = carry(s, &g->e, was, g->parameter, (size_t)g->type->lanes);
-        g->dual = (ax_lane3*)carry(s, &g->e, was, (ax_lane*)g->dual, 3 * (size_t)g->rows);
+        if (s->multiplied) // else they are zero
+            g->dual = (ax_lane3*)carry(s, &g->e, was, (ax_lane*)g->dual, 3 * (size_t)g->rows);
         ax_free(was);
     }
     for (int k = 0; k < s->load_count; ++k)
