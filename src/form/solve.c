@@ -12,7 +12,7 @@
 #include <string.h>
 
 // Weights, with panels at 1. docs/form-finding.md tells how each was found.
-static const double hole_weight = 0.1, fair_weight = 0.1, hang_fair_weight = 0.005, bend_weight = 0.01, rim_weight = 0.3, hang_rim_weight = 1,
+static const double hole_weight = 0.1, fair_weight = 0.1, hang_fair_weight = 0.005, bend_weight = 0.01, hang_bend_weight = 0.003, rim_weight = 0.3, hang_rim_weight = 1,
                     centre_weight = 0.3, proximal = 1e-5, load_strain = 0.1, multiplier_cap = 2;
 static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
 enum { RESIZE_EVERY = 25, STANDARD_ITERATIONS = 400, PATIENCE = 5, REST_CHECK = 25 };
@@ -300,6 +300,9 @@ static void build_hang(ax_form* f)
     g->panels = add(s, "rigid_triangle", 3, linkage->triangle_count, (const int*)linkage->triangles, 0, 1, NULL);
     g->fairness = add(s, "fairness", 4, f->line_count, (const int*)f->lines, 0, hang_fair_weight, NULL);
     ax_solver_set_soft(s, g->fairness, true);
+    int bend = add(s, "fairness", 3, f->bend_count, (const int*)f->bends, 0, hang_bend_weight, NULL);
+    if (bend >= 0)
+        ax_solver_set_soft(s, bend, true);
     add_holders(f, s, 0, true, g);
     add_load(f, s);
     f->hang = s;
