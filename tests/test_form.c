@@ -316,6 +316,44 @@ static void constraints_hold(void** state)
     }
 }
 
+static double cubed(double r)
+{
+    return 1.6 - 0.3 * r * r * r;
+}
+
+// Depth of the middle below the ring at radius 0.8 of the sheet, and the ring's own radius.
+static void profile(int triangles, double out[2])
+{
+    ax_form* form = disk(triangles, 1.2);
+    paint(form, cubed);
+    slide_on_circle(form, 1.3);
+    set_dynamics(form, AX_DYNAMICS_GRAVITY, 3);
+    settle(form);
+    ax_form_view view = ax_form_look(form);
+    double sum[3] = {0, 0, 0};
+    int count[2] = {0, 0};
+    for (int h = 0; h < view.linkage->hinge_count; ++h) {
+        double r = hypot(view.sheet[h][0], view.sheet[h][1]);
+        if (r < 0.15)
+            sum[0] += view.simulated[h][2], ++count[0];
+        if (fabs(r - 0.8) < 0.06)
+            sum[1] += view.simulated[h][2], sum[2] += hypot(view.simulated[h][0], view.simulated[h][1]) * 0.8 / r, ++count[1];
+    }
+    out[0] = sum[1] / count[1] - sum[0] / count[0];
+    out[1] = sum[2] / count[1];
+    ax_form_free(form);
+}
+
+static void shapes_do_not_depend_on_resolution(void** state)
+{
+    (void)state;
+    double coarse[2], fine[2];
+    profile(600, coarse);
+    profile(2500, fine);
+    assert_near(coarse[0], fine[0], 0.02 * 2.6); // 2 % of the size
+    assert_near(coarse[1], fine[1], 0.02 * 2.6);
+}
+
 static void too_little_material_is_told(void** state)
 {
     (void)state;
@@ -371,6 +409,7 @@ int main(void)
         cmocka_unit_test(stored_forms_go_on_with_the_same_bits),
         cmocka_unit_test(a_cancelled_settle_changes_nothing),
         cmocka_unit_test(constraints_hold),
+        cmocka_unit_test(shapes_do_not_depend_on_resolution),
         cmocka_unit_test(too_little_material_is_told),
         cmocka_unit_test(unusable_requests_are_refused),
     };
