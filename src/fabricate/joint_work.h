@@ -28,6 +28,12 @@ struct ax_joint_work {
     ax_status (*rule)(const ax_joint_job* job, ax_panel_rule* rule, ax_error* error);
     // Force that one joint is taken to bear, N.
     double (*rated)(const ax_joint_job* job);
+    // What a test coupon tries: five values of one parameter, or factors of the one chosen. All 0: there is nothing to try.
+    struct {
+        int parameter;
+        bool factors;
+        double value[5];
+    } trial;
     // Loose parts for `joints` hinges where two panels meet. NULL: none.
     void (*part)(const ax_joint_job* job, int joints, ax_cut_part* part);
 };

@@ -67,14 +67,16 @@ static int compose(const ax_work* w, double width, int sheet, char (*line)[160])
     snprintf(words, sizeof words, "sheet %d of %d", sheet + 1, p->sheet_count);
     say(&f, words);
     snprintf(words, sizeof words, "%d panels", panels);
-    say(&f, words);
+    if (panels)
+        say(&f, words);
     snprintf(words, sizeof words, "joint %s", p->joint->name);
     say(&f, words);
     snprintf(words, sizeof words, "%s, %g mm thick", p->material.name, p->material.thickness);
     say(&f, words);
     snprintf(words, sizeof words, p->kerf > 0 ? "kerf %g mm, compensated" : "kerf not compensated", p->kerf);
     say(&f, words);
-    snprintf(words, sizeof words, "drawn in mm, design in %s", ax_unit_name(w->design->unit));
+    snprintf(words, sizeof words, "drawn in mm%s%s", w->design ? ", design in " : "",
+             w->design ? ax_unit_name(w->design->unit) : "");
     say(&f, words);
     if (p->labels_dropped) {
         snprintf(words, sizeof words, "%d panels are too small for a label", p->labels_dropped);

@@ -40,5 +40,7 @@ const ax_joint_type ax_joint_living_hinge = {
     .one_piece = true,
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,
-    .work = &(const struct ax_joint_work){.suit = suit, .rule = rule, .rated = rated},
+    .work =
+        &(const struct ax_joint_work){
+            .suit = suit, .rule = rule, .rated = rated, .trial = {LIGAMENT, true, {0.5, 0.75, 1, 1.5, 2}}},
 };

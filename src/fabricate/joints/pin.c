@@ -57,5 +57,7 @@ const ax_joint_type ax_joint_pin = {
     .two_layers = true,
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,
-    .work = &(const struct ax_joint_work){.suit = suit, .rule = rule, .rated = rated, .part = part},
+    .work =
+        &(const struct ax_joint_work){
+            .suit = suit, .rule = rule, .rated = rated, .trial = {PLAY, false, {0, 0.05, 0.1, 0.2, 0.3}}, .part = part},
 };

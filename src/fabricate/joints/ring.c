@@ -72,5 +72,7 @@ const ax_joint_type ax_joint_ring = {
     .doc = "Holes near the corners; a ring joins two panels.",
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,
-    .work = &(const struct ax_joint_work){.suit = suit, .rule = rule, .rated = rated, .part = part},
+    .work =
+        &(const struct ax_joint_work){
+            .suit = suit, .rule = rule, .rated = rated, .trial = {EDGE, true, {0.5, 0.75, 1, 1.5, 2}}, .part = part},
 };
