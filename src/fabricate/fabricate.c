@@ -89,8 +89,18 @@ static ax_status put_loose_panel(ax_work* w, int t, ax_error* error)
             w->plan->panels[t].name, w->plan->joint->name, edge, edge - o.slack[o.tight]);
     }
     ax_panel_put_outline(&w->builder, &o, &ax_stay);
-    for (int k = 0; k < 3 && o.hole_radius > 0; ++k)
+    double middle[2], inner = ax_inscribed_circle(w, t, middle), deepest = w->rule.hole_offset + w->rule.radius;
+    for (int k = 0; k < 3 && o.hole_radius > 0; ++k) {
+        double reach = ax_distance2(w->flat[w->linkage->triangles[t][k]], middle);
+        if (reach < deepest)
+            return ax_fail(
+                error, AX_CANNOT_REALISE,
+                "Panel %s is too small for the joint \"%s\": its holes and their edges reach %.3g mm inward, "
+                "beyond its middle, which lies %.3g mm from a corner (inscribed circle of %.3g mm). Make the "
+                "joint smaller, or design with fewer and larger panels.",
+                w->plan->panels[t].name, w->plan->joint->name, deepest, reach, inner);
         ax_panel_put_hole(&w->builder, &o, k, &ax_stay);
+    }
     return AX_OK;
 }
 

@@ -13,18 +13,23 @@ static const double underline = 0.8; // letter heights below the middle
 static const double mark = 5;        // mm, length of alignment marks
 static const double leader = 1.5;    // mm, least length of a leader
 
-// Middle and radius of the circle that the label may use.
-static double free_circle(const ax_work* w, int triangle, double centre[2])
+double ax_inscribed_circle(const ax_work* w, int triangle, double middle[2])
 {
     const int* corner = w->linkage->triangles[triangle];
     double side[3], sum = 0;
     for (int k = 0; k < 3; ++k)
         sum += side[k] = ax_distance2(w->flat[corner[(k + 1) % 3]], w->flat[corner[(k + 2) % 3]]);
-    centre[0] = centre[1] = 0;
+    middle[0] = middle[1] = 0;
     for (int k = 0; k < 3; ++k)
         for (int d = 0; d < 2; ++d)
-            centre[d] += side[k] / sum * w->flat[corner[k]][d];
-    double radius = ax_orient2(w->flat[corner[0]], w->flat[corner[1]], w->flat[corner[2]]) / sum - w->rule.inset;
+            middle[d] += side[k] / sum * w->flat[corner[k]][d];
+    return ax_orient2(w->flat[corner[0]], w->flat[corner[1]], w->flat[corner[2]]) / sum;
+}
+
+// Middle and radius of the circle that the label may use.
+static double free_circle(const ax_work* w, int triangle, double centre[2])
+{
+    double radius = ax_inscribed_circle(w, triangle, centre) - w->rule.inset;
     if (w->rule.hole_radius > 0) {
         ax_panel_outline o = ax_work_outline(w, triangle, 0);
         for (int k = 0; k < 3; ++k)

@@ -9,52 +9,71 @@ static void direction(const double from[2], const double to[2], double out[2])
         out[d] = (to[d] - from[d]) / length;
 }
 
-ax_opening_corner ax_opening_corner_make(const double before[2], const double at[2], const double after[2],
-                                         double ligament, double grow)
+// An opening at a hinge: its edges' directions, half its angle, and the direction of its middle.
+typedef struct gap {
+    double in[2], out[2], middle[2], half;
+} gap;
+
+static gap gap_of(const double before[2], const double at[2], const double after[2])
+{
+    gap g;
+    direction(before, at, g.in);
+    direction(at, after, g.out);
+    g.half = (AX_PI - atan2(ax_cross2(g.in, g.out), g.in[0] * g.out[0] + g.in[1] * g.out[1])) / 2;
+    double c = cos(g.half), s = sin(g.half);
+    g.middle[0] = c * g.out[0] - s * g.out[1], g.middle[1] = s * g.out[0] + c * g.out[1];
+    return g;
+}
+
+// Where the circle about o->centre meets an edge through `at`, moved left by `grow`, on the side that `way` (1 or -1) points to.
+static void meet_edge(const ax_opening_corner* o, double radius, const double at[2], const double along[2], double grow,
+                      double way, double out[2])
+{
+    double from_edge = (o->centre[1] - at[1]) * along[0] - (o->centre[0] - at[0]) * along[1] - grow;
+    double reach = way * sqrt(fmax(0, radius * radius - from_edge * from_edge));
+    out[0] = o->centre[0] + from_edge * along[1] + reach * along[0];
+    out[1] = o->centre[1] - from_edge * along[0] + reach * along[1];
+}
+
+// Angle from `a` to `b` about the arc's centre, in the sense of `way`.
+static double turn_between(const ax_opening_corner* o, const double a[2], const double b[2], double way)
+{
+    const double x[2] = {a[0] - o->centre[0], a[1] - o->centre[1]}, y[2] = {b[0] - o->centre[0], b[1] - o->centre[1]};
+    double angle = atan2(ax_cross2(x, y), x[0] * y[0] + x[1] * y[1]) * way;
+    return way * (angle < -1e-9 ? angle + 2 * AX_PI : fmax(angle, 0));
+}
+
+static ax_opening_corner plain_corner(const gap* g, const double at[2], double grow)
 {
     ax_opening_corner o = {0};
-    double in[2], out[2], middle[2];
-    direction(before, at, in);
-    direction(at, after, out);
-    double turn = atan2(ax_cross2(in, out), in[0] * out[0] + in[1] * out[1]), half = (AX_PI - turn) / 2;
-    double c = cos(half), s = sin(half); // half the opening's angle, which is under 180 degrees where it turns left
-    middle[0] = c * out[0] - s * out[1], middle[1] = s * out[0] + c * out[1];
-    if (ligament <= 0) {
+    for (int d = 0; d < 2; ++d)
+        o.enter[d] = o.leave[d] = o.tip[d] = at[d] + grow / sin(g->half) * g->middle[d];
+    return o;
+}
+
+// `own`: the opening; `other`: the one across the hinge; grow: half the kerf.
+static ax_opening_corner round_corner(const gap* own, const gap* other, bool mouth, const double at[2], double ligament,
+                                      double grow)
+{
+    ax_opening_corner o = {0};
+    const gap* m = mouth ? own : other;
+    double s = sin(m->half), radius = ligament / 2 * s / (1 - s), way = mouth ? 1 : -1;
+    for (int d = 0; d < 2; ++d)
+        o.centre[d] = at[d] + radius / s * m->middle[d];
+    radius += mouth ? -grow : ligament + grow;
+    if (radius <= 0) { // the beam is wider than the mouth's end
+        o = plain_corner(own, at, grow);
+        o.line = true;
         for (int d = 0; d < 2; ++d)
-            o.enter[d] = o.leave[d] = o.tip[d] = at[d] + grow / s * middle[d];
+            o.line_end[d] = at[d] + (ligament / 2 + grow) * own->middle[d];
         return o;
     }
-    double reach, radius,
-        toward; // of the arc's centre from the hinge along the middle; which way the arc's own tip lies
-    bool mouth = half <= AX_PI / 3;
-    if (mouth) {
-        radius = fmax(ligament / 2 * s / (1 - s) - grow, 0);
-        reach = (radius + grow) / s;
-        toward = -1;
-        o.line = radius <= 0;
-        for (int d = 0; d < 2; ++d)
-            o.line_end[d] = at[d] + (ligament / 2 + grow) * middle[d];
-    } else {
-        radius = ligament + grow;
-        reach = -ligament / 2;
-        toward = 1;
-    }
-    double from_edge = reach * s - grow, along = sqrt(fmax(0, radius * radius - from_edge * from_edge));
-    for (int d = 0; d < 2; ++d) {
-        o.centre[d] = at[d] + reach * middle[d];
-        o.tip[d] = o.centre[d] + toward * radius * middle[d];
-    }
-    // feet of the centre on the grown edges, which lie to the right of the centre if from_edge is positive
-    o.enter[0] = o.centre[0] + from_edge * in[1] - along * in[0];
-    o.enter[1] = o.centre[1] - from_edge * in[0] - along * in[1];
-    o.leave[0] = o.centre[0] + from_edge * out[1] + along * out[0];
-    o.leave[1] = o.centre[1] - from_edge * out[0] + along * out[1];
-    if (mouth)
-        o.sweep = radius > 0 ? turn : 0;
-    else { // clockwise round the disc from enter to leave, symmetric about the middle
-        double x = (o.enter[0] - o.centre[0]) * middle[0] + (o.enter[1] - o.centre[1]) * middle[1];
-        o.sweep = -2 * acos(ax_clamp(x / radius, -1, 1));
-    }
+    meet_edge(&o, radius, at, own->in, grow, -1, o.enter);
+    meet_edge(&o, radius, at, own->out, grow, 1, o.leave);
+    for (int d = 0; d < 2; ++d)
+        o.tip[d] = o.centre[d] - radius * m->middle[d];
+    o.sweep[0] = turn_between(&o, o.enter, o.tip, way);
+    o.sweep[1] = turn_between(&o, o.tip, o.leave, way);
     return o;
 }
 
@@ -85,12 +104,21 @@ static const double* place(const ax_work* w, int corner)
     return w->flat[w->linkage->triangles[corner / 3][corner % 3]];
 }
 
+static gap gap_at(const ax_work* w, int corner, int next)
+{
+    int before = corner - corner % 3 + (corner + 1) % 3;
+    return gap_of(place(w, before), place(w, corner), place(w, along_edge(next)));
+}
+
 // The corner of the opening that is reached at `corner` and left from `next` (the same hinge).
 static ax_opening_corner corner_at(const ax_work* w, int corner, int next, double grow)
 {
-    int before = corner - corner % 3 + (corner + 1) % 3;
-    return ax_opening_corner_make(place(w, before), place(w, corner), place(w, along_edge(next)),
-                                  corner == next ? 0 : w->rule.ligament, grow);
+    gap own = gap_at(w, corner, next);
+    if (corner == next)
+        return plain_corner(&own, place(w, corner), grow);
+    gap other = gap_at(w, next, corner);
+    bool mouth = own.half < other.half || (own.half == other.half && corner < next);
+    return round_corner(&own, &other, mouth, place(w, corner), w->rule.ligament, grow);
 }
 
 void ax_openings_put_panel(ax_work* w, int triangle)
@@ -105,9 +133,9 @@ void ax_openings_put_panel(ax_work* w, int triangle)
         }
         ax_opening_corner in = corner_at(w, other, corner, 0), out = corner_at(w, corner, other, 0);
         ax_plan_point(b, in.leave[0], in.leave[1]);
-        ax_plan_arc(b, in.centre, in.tip[0], in.tip[1], -in.sweep / 2, false);
+        ax_plan_arc(b, in.centre, in.tip[0], in.tip[1], -in.sweep[1], false);
         ax_plan_point(b, out.tip[0], out.tip[1]);
-        ax_plan_arc(b, out.centre, out.enter[0], out.enter[1], -out.sweep / 2, false);
+        ax_plan_arc(b, out.centre, out.enter[0], out.enter[1], -out.sweep[0], false);
     }
 }
 
@@ -185,11 +213,11 @@ static void put_loop(ax_work* w, const loop* l, const ax_motion* motion)
         double enter[2], leave[2], centre[2];
         ax_move(motion, o->enter[0], o->enter[1], enter);
         ax_plan_point(b, enter[0], enter[1]);
-        if (o->sweep == 0)
+        if (o->sweep[0] == 0)
             continue;
         ax_move(motion, o->leave[0], o->leave[1], leave);
         ax_move(motion, o->centre[0], o->centre[1], centre);
-        ax_plan_arc(b, centre, leave[0], leave[1], o->sweep, false);
+        ax_plan_arc(b, centre, leave[0], leave[1], o->sweep[0] + o->sweep[1], false);
     }
 }
 
@@ -210,7 +238,7 @@ static void put_lines(ax_work* w, const loop* l, const ax_motion* motion)
     double middle[2] = {0, 0};
     int bulges = 0;
     for (int i = 0; i < l->count; ++i)
-        if (l->shapes[i].sweep < 0) {
+        if (l->shapes[i].sweep[0] < 0) {
             ++bulges;
             for (int d = 0; d < 2; ++d)
                 middle[d] += place(w, l->corners[i])[d];
@@ -218,7 +246,7 @@ static void put_lines(ax_work* w, const loop* l, const ax_motion* motion)
     for (int i = 0; i < l->count && bulges; ++i) {
         const ax_opening_corner* o = &l->shapes[i];
         double end[2] = {middle[0] / bulges, middle[1] / bulges};
-        if (o->sweep >= 0)
+        if (o->sweep[0] >= 0)
             put_line(w, o->line ? o->line_end : o->tip, end, motion);
     }
 }

@@ -12,16 +12,9 @@ static const double margin = 10, filled = 0.8; // mm; of the inscribed circle
 static void put_name(ax_work* w, int t, const ax_motion* m)
 {
     const ax_cut_panel* p = &w->plan->panels[t];
-    const int* corner = w->linkage->triangles[t];
-    double sum = 0, centre[2] = {0, 0}, at[2];
-    for (int k = 0; k < 3; ++k) {
-        sum += ax_distance2(w->flat[corner[k]], w->flat[corner[(k + 1) % 3]]);
-        for (int d = 0; d < 2; ++d)
-            centre[d] += w->flat[corner[k]][d] / 3;
-    }
+    double centre[2], at[2], radius = ax_inscribed_circle(w, t, centre);
     char text[40];
     snprintf(text, sizeof text, "%s/%d", p->name, p->sheet + 1);
-    double radius = ax_orient2(w->flat[corner[0]], w->flat[corner[1]], w->flat[corner[2]]) / sum;
     double height = 2 * filled * radius / hypot(ax_stroke_width(text), 1);
     ax_move(m, centre[0] - ax_stroke_width(text) * height / 2, centre[1] - height / 2, at);
     ax_plan_item(&w->builder, AX_NOTE, t, "label-%s", p->name);

@@ -49,7 +49,10 @@ ax_status ax_prove_clearance(ax_work* w, const ax_progress* progress, ax_error* 
 ax_status ax_find_pieces(ax_work* w, int* count, ax_error* error);
 ax_status ax_lay_out(ax_work* w, int pieces, ax_error* error);
 
-// label.c: names inside panels, upright as in the flat state; what stands at corners; seams between pieces.
+// label.c: middle and radius of a triangle's inscribed circle.
+double ax_inscribed_circle(const ax_work* w, int triangle, double middle[2]);
+
+// Names inside panels, upright as in the flat state; what stands at corners; seams between pieces.
 void ax_choose_labels(ax_work* w);
 void ax_put_label(ax_work* w, int panel);
 void ax_put_neighbours(ax_work* w, int panel);
