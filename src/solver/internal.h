@@ -2,6 +2,7 @@
 // neighbours in memory work on neighbours in space.
 #pragma once
 
+#include "solver/anderson.h"
 #include "solver/solver.h"
 
 enum { CHUNK = 64, POINTS_PER_TASK = 4096 }; // blocks of elements and points that one task takes
@@ -72,6 +73,10 @@ struct ax_solver {
     tally* tallies;                 // one per task; those of points come last
     int point_tallies;
     ax_panels* panels;
+    ax_anderson* anderson;   // NULL: plain iterations
+    ax_anderson_part* parts; // room for the places and every group
+    bool changed;            // something since the last iteration that the past does not know
+    double merit;            // the last energy, or with multipliers the square of the shortest step
     ax_dynamics dynamics;
     double load_factor, cap;
     bool dynamic, multipliers, multiplied; // multiplied: some multiplier may not be zero

@@ -226,14 +226,29 @@ static void run_elements(ax_solver* s)
 
 typedef double v4 __attribute__((vector_size(32)));
 
+// Energy of dead loads at a point and, in a time step, of its distance from where inertia would take it.
+static double point_energy(const ax_solver* s, int v)
+{
+    double energy = s->dead ? -2 * s->load_factor * ax_dot3(s->dead[v], s->x[v]) : 0;
+    double h = s->dynamics.time_step;
+    for (int c = 0; s->dynamic && c < 3; ++c) {
+        double from = s->kept[v][c] + h * s->velocity[v][c] + h * h * s->dynamics.acceleration[c];
+        energy += s->dynamics.mass / (h * h) * (s->x[v][c] - from) * (s->x[v][c] - from);
+    }
+    return energy;
+}
+
 // Right-hand side of one range of points: base plus rows in their fixed order.
 static void sum_points(void* context, int task)
 {
     ax_solver* s = context;
     int end = (task + 1) * POINTS_PER_TASK < s->n ? (task + 1) * POINTS_PER_TASK : s->n;
+    double energy = 0;
     for (int v = task * POINTS_PER_TASK; v < end; ++v) {
         if (s->held[v]) // its row of the matrix is x = x
             continue;
+        if (s->tallying)
+            energy += point_energy(s, v);
         v4 sum = *(const v4*)s->base[v];
         for (int k = s->incident_start[v]; k < s->incident_start[v + 1]; ++k) {
             v4 row = *(const v4*)s->row[s->incident[k] >> 1];
@@ -241,6 +256,8 @@ static void sum_points(void* context, int task)
         }
         *(v4*)s->x[v] = sum;
     }
+    if (s->tallying)
+        s->tallies[s->point_tallies + task] = (tally){.energy = energy};
 }
 
 // Loads minus forces of constraints of one range of points.

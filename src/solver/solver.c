@@ -73,6 +73,7 @@ void ax_solver_free(ax_solver* s)
         ax_free(blocks[k]);
     ax_sparse_free(&s->held_matrix);
     ax_panels_free(s->panels);
+    ax_anderson_free(s->anderson);
     ax_free(s);
 }
 
@@ -83,6 +84,7 @@ int ax_solver_add(ax_solver* s, const ax_constraint_type* type, int points_each,
     assert(count > 0 && (weight > 0 || type->eliminated));
     assert(!type->eliminated || points_each == 1);
     s->groups = ax_realloc(s->groups, (size_t)s->group_count + 1, sizeof *s->groups);
+    s->parts = ax_realloc(s->parts, (size_t)s->group_count + 2, sizeof *s->parts);
     group* g = s->groups + s->group_count;
     *g = (group){.type = type, .place = place, .weight = weight, .rows = ax_row_count(type, points_each)};
     g->e = make_elements(points_each, count, points, type->pattern == AX_ROWS_EDGES ? g->rows : points_each);
@@ -112,6 +114,7 @@ int ax_solver_add(ax_solver* s, const ax_constraint_type* type, int points_each,
 
 void ax_solver_set_weight(ax_solver* s, int k, double weight)
 {
+    s->changed = true;
     assert(weight > 0);
     s->values_changed = s->values_changed || weight != s->groups[k].weight;
     s->groups[k].weight = weight;
@@ -119,6 +122,7 @@ void ax_solver_set_weight(ax_solver* s, int k, double weight)
 
 void ax_solver_set(ax_solver* s, int k, int constraint, int lane, double value)
 {
+    s->changed = true;
     group* g = s->groups + k;
     assert(constraint < g->e.count && lane < g->type->lanes);
     int slot = g->e.slot[constraint], last = g->e.count - 1;
@@ -132,6 +136,7 @@ void ax_solver_set(ax_solver* s, int k, int constraint, int lane, double value)
 
 void ax_solver_set_all(ax_solver* s, int k, int first, int lanes, const double* values)
 {
+    s->changed = true;
     group* g = s->groups + k;
     assert(first + lanes <= g->type->lanes);
     size_t each = (size_t)g->type->lanes;
@@ -156,6 +161,7 @@ double ax_solver_get(const ax_solver* s, int k, int constraint, int lane)
 
 void ax_solver_set_places(ax_solver* s, const double (*places)[3])
 {
+    s->changed = true;
     for (int v = 0; v < s->n; ++v) {
         double* x = s->x[s->position[v]];
         x[0] = places[v][0], x[1] = places[v][1], x[2] = places[v][2], x[3] = 0;
@@ -185,6 +191,7 @@ static double loop_area(const ax_solver* s, const double (*places)[3], int count
 
 void ax_solver_measure_load(ax_solver* s, int k, const double (*places)[3])
 {
+    s->changed = true;
     for (int c = 0; c < s->loads[k].class_count; ++c) {
         load_class* class = s->loads[k].classes + c;
         const elements* e = &class->e;
@@ -238,6 +245,7 @@ int ax_solver_add_load(ax_solver* s, const ax_load_type* type, int loops, const 
 
 void ax_solver_set_load_value(ax_solver* s, int k, int at, double value)
 {
+    s->changed = true;
     assert(at < s->loads[k].type->values);
     s->loads[k].value[at] = value;
     s->dead_changed = s->dead_changed || !s->loads[k].type->follows;
@@ -250,6 +258,7 @@ double ax_solver_get_load_value(const ax_solver* s, int k, int at)
 
 void ax_solver_set_load(ax_solver* s, const double (*force)[3])
 {
+    s->changed = true;
     if (!s->point_force)
         s->point_force = ax_alloc((size_t)s->n, sizeof *s->point_force);
     if (force)
@@ -261,11 +270,13 @@ void ax_solver_set_load(ax_solver* s, const double (*force)[3])
 
 void ax_solver_scale_loads(ax_solver* s, double factor)
 {
+    s->changed = true;
     s->load_factor = factor;
 }
 
 void ax_solver_set_dynamics(ax_solver* s, const ax_dynamics* dynamics)
 {
+    s->changed = true;
     double before = s->dynamic ? s->dynamics.mass / (s->dynamics.time_step * s->dynamics.time_step) : 0;
     s->dynamics = *dynamics;
     s->dynamic = dynamics->mass > 0;
@@ -275,12 +286,14 @@ void ax_solver_set_dynamics(ax_solver* s, const ax_dynamics* dynamics)
 
 void ax_solver_use_multipliers(ax_solver* s, bool use)
 {
+    s->changed = true;
     s->multipliers = use;
     s->multiplied = s->multiplied || use;
 }
 
 void ax_solver_reset_multipliers(ax_solver* s)
 {
+    s->changed = true;
     for (int k = 0; k < s->group_count && s->multiplied; ++k) {
         group* g = s->groups + k;
         memset(g->dual, 0, (size_t)g->e.blocks * (size_t)g->rows * sizeof *g->dual);
@@ -289,11 +302,13 @@ void ax_solver_reset_multipliers(ax_solver* s)
 
 void ax_solver_cap_multipliers(ax_solver* s, double length)
 {
+    s->changed = true;
     s->cap = length;
 }
 
 void ax_solver_set_soft(ax_solver* s, int k, bool soft)
 {
+    s->changed = true;
     s->groups[k].soft = soft;
 }
 
@@ -323,7 +338,7 @@ void ax_solver_get_multipliers(const ax_solver* s, double* out)
 
 void ax_solver_set_multipliers(ax_solver* s, const double* from)
 {
-    s->multiplied = true;
+    s->multiplied = s->changed = true;
     for (int k = 0; k < s->group_count; ++k)
         for (int c = 0; c < s->groups[k].e.count; ++c)
             for (int r = 0; r < s->groups[k].rows; ++r)
@@ -594,6 +609,7 @@ bool ax_solver_prepare(ax_solver* s)
         return true;
     double start = ax_seconds();
     bool sound = !s->values_changed || factorise(s);
+    s->changed = true;
     if (s->rows_changed) {
         sort_all(s);
         list_incidence(s);
@@ -603,15 +619,83 @@ bool ax_solver_prepare(ax_solver* s)
     return sound;
 }
 
+static double energy_of_tallies(const ax_solver* s)
+{
+    return ax_sum_tallies(s, 0, s->point_tallies + point_task_count(s)).energy;
+}
+
+// Places and, where they are in use, multipliers: what an iteration maps to itself.
+static void forget_past(ax_solver* s)
+{
+    ax_anderson_part* parts = s->parts;
+    int count = 0;
+    parts[count++] = (ax_anderson_part){*s->x, 4 * (size_t)s->n};
+    for (int k = 0; k < s->group_count; ++k) {
+        const group* g = s->groups + k;
+        if (is_hard(s, g))
+            parts[count++] = (ax_anderson_part){**g->dual, (size_t)g->e.blocks * (size_t)g->rows * 3 * AX_W};
+    }
+    ax_anderson_start(s->anderson, count, parts, s->pool);
+    s->changed = false;
+    s->merit = INFINITY;
+}
+
+// A local/global iteration descends the energy, so a jump that does not lower it is taken back before the global step (Peng et al.
+// 2018). With multipliers nothing descends. There the step must shorten (Zhang et al. 2019), which is known one global step later, and
+// the next jump waits for a step shorter than all before: without that, accepted jumps and the steps that repair them went on in
+// turn, far from any solution.
 static void iterate(ax_solver* s)
 {
     double start = ax_seconds();
+    bool hard = false, jumped = false;
+    if (s->anderson) {
+        for (int k = 0; k < s->group_count; ++k)
+            hard = hard || is_hard(s, s->groups + k);
+        if (s->changed)
+            forget_past(s);
+        jumped = ax_anderson_jump(s->anderson, s->pool);
+        s->tallying = !hard;
+    }
     ax_local_step(s);
+    if (s->tallying) {
+        double energy = energy_of_tallies(s);
+        if (jumped && !(energy <= s->merit)) {
+            ax_anderson_revert(s->anderson, s->pool);
+            ax_local_step(s);
+            energy = energy_of_tallies(s);
+            ++s->counters.jumps_refused;
+        }
+        s->merit = energy;
+        s->tallying = false;
+    }
     double middle = ax_seconds();
     ax_panels_solve(s->panels, s->pool, s->x);
     s->counters.seconds_local += middle - start;
-    s->counters.seconds_global += ax_seconds() - middle;
+    double end = ax_seconds();
+    s->counters.seconds_global += end - middle;
     ++s->counters.iterations;
+    if (!s->anderson)
+        return;
+    double step = hard ? ax_anderson_residual(s->anderson, s->pool) : 0;
+    if (jumped && hard && !(step <= s->merit)) {
+        ax_anderson_revert(s->anderson, s->pool);
+        ax_anderson_forget(s->anderson);
+        ++s->counters.jumps_refused;
+    } else {
+        ax_anderson_take(s->anderson, s->pool);
+        if (hard && !(step <= s->merit))
+            ax_anderson_forget(s->anderson);
+        else if (hard)
+            s->merit = step;
+    }
+    s->counters.seconds_anderson += ax_seconds() - end;
+}
+
+void ax_solver_accelerate(ax_solver* s, int window)
+{
+    ax_anderson_free(s->anderson);
+    s->anderson = window > 0 ? ax_anderson_make(window) : NULL;
+    s->changed = true;
 }
 
 // Adds to the base what is constant during iterations: dead loads, and held points where they pull on free ones.
@@ -658,6 +742,7 @@ bool ax_solver_step(ax_solver* s, int iterations)
         }
     ax_pin(s);
     add_to_base(s);
+    s->changed = true; // every step has an energy of its own
     for (int k = 0; k < iterations; ++k)
         iterate(s);
     for (int v = 0; v < s->n; ++v)
@@ -677,6 +762,7 @@ ax_solver_counters ax_solver_count(const ax_solver* s)
     ax_solver_counters counters = s->counters;
     counters.bytes = (size_t)s->n * (4 * sizeof(ax_vec4) + 4 * sizeof(double) + 3 * sizeof(int) + 1) +
                      (size_t)s->row_count * sizeof *s->row;
+    counters.bytes += s->anderson ? ax_anderson_bytes(s->anderson) : 0;
     counters.bytes += s->dead ? (size_t)s->n * sizeof *s->dead : 0;
     counters.bytes += s->point_force ? (size_t)s->n * sizeof *s->point_force : 0;
     if (s->panels)

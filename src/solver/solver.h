@@ -83,6 +83,12 @@ double ax_solver_multiplier(const ax_solver* solver, int group, int constraint);
 // keeps such a problem in sight of a compromise and leaves problems that can be met alone.
 void ax_solver_cap_multipliers(ax_solver* solver, double length);
 
+// Anderson acceleration: every iteration starts from a combination of the last `window` + 1 (1 .. 8, 5 is a good one; 0: none, the
+// standard), taken back where it raises the energy or, with multipliers, where the step does not shorten. Memory grows by
+// 2 window + 3 copies of places and multipliers; results then depend on the iterations before. Any change by one of the
+// functions above forgets those.
+void ax_solver_accelerate(ax_solver* solver, int window);
+
 // Analyses and factorises what has changed; called by those below. False if the matrix is not positive definite: some point is
 // bound by nothing.
 bool ax_solver_prepare(ax_solver* solver);
@@ -155,5 +161,7 @@ typedef struct ax_solver_counters {
     size_t bytes_per_solve;               // read by one global solve
     double seconds_local, seconds_global; // since the solver was made
     double seconds_prepare, seconds_factorise; // the latter within the former
+    double seconds_anderson;
+    int jumps_refused; // by the safeguard of the acceleration
 } ax_solver_counters;
 ax_solver_counters ax_solver_count(const ax_solver* solver);
