@@ -1,6 +1,5 @@
 // Curves as places for on_geometry: rims slide on them. Each finds its nearest point of all, not a local one, and gives
-// it a parameter, so that hinges on a curve have an order. (A surface becomes a place where meshes are known: ax_place
-// is one function.)
+// it a parameter, so that hinges on a curve have an order. A mesh becomes a place by ax_closest_place.
 #pragma once
 
 #include "constraint/constraint_type.h"

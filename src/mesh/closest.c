@@ -4,6 +4,7 @@
 #include "mesh/geometry.h"
 
 #include <assert.h>
+#include <string.h>
 
 struct ax_closest {
     const ax_mesh* mesh;
@@ -148,4 +149,19 @@ ax_closest_point ax_closest_find(const ax_closest* closest, const double x[3], i
     else
         ax_face_normal(mesh, s.face, result.normal);
     return result;
+}
+
+static void nearest(const void* geometry, const double x[3], double out[3])
+{
+    if (!isfinite(4 * ax_dot3(x, x))) { // of a solver that diverges: it stays so, and the solver says it
+        memcpy(out, x, 3 * sizeof *out);
+        return;
+    }
+    ax_closest_point found = ax_closest_find(geometry, x, -1);
+    memcpy(out, found.point, sizeof found.point);
+}
+
+ax_place ax_closest_place(const ax_closest* closest)
+{
+    return (ax_place){nearest, closest};
 }

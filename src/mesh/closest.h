@@ -1,6 +1,8 @@
 // Exact closest points on a mesh (bounding volume tree) and on polylines.
 #pragma once
 
+#include "constraint/constraint_type.h"
+
 #include "ax/mesh.h"
 
 typedef struct ax_closest ax_closest;
@@ -19,6 +21,9 @@ typedef struct ax_closest_point {
 
 // The closest point of the surface to x; `hint` is a face to start from (the previous answer) or -1. Thread safe.
 ax_closest_point ax_closest_find(const ax_closest* tree, const double x[3], int hint);
+
+// The surface as a place for constraints that keep points on it, borrowed.
+ax_place ax_closest_place(const ax_closest* tree);
 
 // Closed polyline in 3D or in the plane (z = 0), with a tree over its segments.
 typedef struct ax_polyline ax_polyline;

@@ -72,14 +72,17 @@ static double spread(const ax_solver* s)
 
 double ax_solver_load_ratio(ax_solver* s, int k)
 {
-    if (!measure(s))
+    double factor = s->load_factor;
+    s->load_factor = 1;
+    bool sound = measure(s);
+    s->load_factor = factor;
+    if (!sound)
         return NAN;
-    // constraints without force leave the loads alone
     double sum = 0;
     for (int v = 0; v < s->n; ++v) {
         double f[3];
         for (int c = 0; c < 3; ++c)
-            f[c] = s->dead ? s->load_factor * s->dead[v][c] : 0;
+            f[c] = s->dead ? s->dead[v][c] : 0;
         for (int i = s->incident_start[v]; i < s->incident_start[v + 1]; ++i) {
             int row = s->incident[i] >> 1;
             for (int c = 0; c < 3 && row >= s->first_load_row; ++c)
@@ -119,8 +122,8 @@ static void judge(ax_solver* s, ax_settled* r)
     for (int v = 0; points.load_square == 0 && v < s->n; ++v)
         if (!s->held[s->position[v]])
             scale += s->stiffness[v] * s->stiffness[v] * r->length * r->length;
-    scale = points.load_square > 0 ? points.load_square : scale;
-    r->force = scale > 0 ? sqrt(points.residual_square / scale) : 0;
+    scale = points.load_square == 0 ? scale : points.load_square;
+    r->force = scale == 0 ? 0 : sqrt(points.residual_square / scale); // places that are not finite make it so too
     r->primal = r->multiplier_most = 0;
     r->capped = 0;
     r->worst_group = -1;
@@ -135,8 +138,7 @@ static void judge(ax_solver* s, ax_settled* r)
             worst = residual, r->worst_group = k;
         if (!is_hard(s, g))
             continue;
-        if (!(residual <= r->primal)) // keeps what is not a number
-            r->primal = residual;
+        r->primal = fmax(r->primal, residual);
         r->multiplier_most = fmax(r->multiplier_most, sqrt(t.dual_most) / r->length);
         r->capped += t.capped;
     }
@@ -155,7 +157,7 @@ ax_settled ax_solver_settle(ax_solver* s, const ax_settle* settle, const ax_prog
     for (;;) {
         judge(s, &r);
         double worst = fmax(r.force / settle->force, r.primal / settle->primal);
-        if (!isfinite(r.force) || !isfinite(r.primal) || worst > 1e3 * least) {
+        if (!isfinite(r.force) || worst > 1e3 * least) {
             r.end = AX_SETTLE_DIVERGED;
             return r;
         }

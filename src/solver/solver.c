@@ -211,9 +211,12 @@ int ax_solver_add_load(ax_solver* s, const ax_load_type* type, int loops, const 
     s->loads = ax_realloc(s->loads, (size_t)s->load_count + 1, sizeof *s->loads);
     load* f = s->loads + s->load_count;
     *f = (load){.type = type};
-    for (int k = 0; k < type->parameter_count; ++k)
-        for (int i = 0; i < type->parameters[k].lanes; ++i)
-            f->value[type->parameters[k].offset + i] = type->parameters[k].standard;
+    for (int k = 0; k < type->parameter_count; ++k) {
+        const ax_parameter* parameter = type->parameters + k;
+        bool direction = strcmp(parameter->unit, "direction") == 0;
+        for (int i = 0; i < parameter->lanes; ++i)
+            f->value[parameter->offset + i] = direction ? i == 2 : parameter->standard;
+    }
     double centre[3] = {0};
     int most = 0;
     for (int k = start[0]; k < start[loops]; ++k)
