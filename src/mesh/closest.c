@@ -163,5 +163,5 @@ static void nearest(const void* geometry, const double x[3], double out[3])
 
 ax_place ax_closest_place(const ax_closest* closest)
 {
-    return (ax_place){nearest, closest};
+    return (ax_place){.nearest = nearest, .geometry = closest};
 }
