@@ -53,7 +53,7 @@ static const command* find_command(const char* name, ax_error* error)
         if (strcmp(name, all[k]->name) == 0)
             found = all[k];
     }
-    const char* nearest = nearest_word(name, count, names);
+    const char* nearest = ax_nearest_word(name, count, names);
     if (!found && nearest)
         ax_fail(error, AX_USAGE, "There is no command \"%s\". Did you mean \"%s\"?", name, nearest);
     else if (!found)

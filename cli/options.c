@@ -2,12 +2,11 @@
 
 #include <assert.h>
 #include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 100, COLUMN = 30, LONGEST_WORD = 63 };
+enum { WIDTH = 100, COLUMN = 30 };
 
 static void* place(const command_option* option, void* arguments)
 {
@@ -113,42 +112,6 @@ static ax_status parse_value(const command_option* o, const char* text, void* va
     return AX_FAILED;
 }
 
-// Optimal string alignment: insertions, deletions, exchanged letters, and swapped neighbours count one each.
-static int changed_letters(const char* a, const char* b)
-{
-    int rows[3][LONGEST_WORD + 2];
-    int n = (int)strlen(a), m = (int)strlen(b);
-    if (n > LONGEST_WORD || m > LONGEST_WORD)
-        return INT_MAX;
-    for (int j = 0; j <= m; ++j)
-        rows[0][j] = j;
-    for (int i = 1; i <= n; ++i) {
-        int *row = rows[i % 3], *above = rows[(i + 2) % 3], *two_above = rows[(i + 1) % 3];
-        row[0] = i;
-        for (int j = 1; j <= m; ++j) {
-            int best = above[j - 1] + (a[i - 1] != b[j - 1]);
-            best = above[j] + 1 < best ? above[j] + 1 : best;
-            best = row[j - 1] + 1 < best ? row[j - 1] + 1 : best;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && two_above[j - 2] + 1 < best)
-                best = two_above[j - 2] + 1;
-            row[j] = best;
-        }
-    }
-    return rows[n % 3][m];
-}
-
-const char* nearest_word(const char* word, int count, const char* const* candidates)
-{
-    const char* nearest = NULL;
-    int fewest = (int)strlen(word) / 3 + 2;
-    for (int k = 0; k < count; ++k) {
-        int changed = changed_letters(word, candidates[k]);
-        if (changed < fewest)
-            fewest = changed, nearest = candidates[k];
-    }
-    return nearest;
-}
-
 static const command_option* find_option(const command* c, const char* name, size_t length)
 {
     for (int k = 0; k < c->option_count; ++k)
@@ -165,7 +128,7 @@ static ax_status unknown_option(const command* c, const char* name, ax_error* er
     for (int k = 0; k < c->option_count && count < 64; ++k)
         if (!c->options[k].operand)
             known[count++] = c->options[k].name;
-    const char* nearest = nearest_word(name, count, known);
+    const char* nearest = ax_nearest_word(name, count, known);
     if (nearest)
         return ax_fail(error, AX_USAGE, "There is no option %s. Did you mean %s?", name, nearest);
     return ax_fail(error, AX_USAGE, "There is no option %s. \"auxshell %s --help\" lists them all.", name, c->name);

@@ -64,6 +64,3 @@ void command_print_reference(const command* command, FILE* out); // as a section
 
 // Prints a text wrapped at 100 columns; lines after the first are indented.
 void print_wrapped(FILE* out, int column, int indent, const char* text);
-
-// The candidate with the fewest changed letters, or NULL if none is near.
-const char* nearest_word(const char* word, int count, const char* const* candidates);

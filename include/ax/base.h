@@ -59,5 +59,8 @@ size_t ax_allocation_count(void);
 #define AX_NEW(T, n)  ((T*)ax_alloc((size_t)(n), sizeof(T)))
 #define AX_NEW0(T, n) ((T*)ax_calloc((size_t)(n), sizeof(T)))
 
+// The candidate that a misspelt word most likely meant, by changed letters; NULL if none is near.
+const char* ax_nearest_word(const char* word, int count, const char* const* candidates);
+
 // Version of the library, "MAJOR.MINOR.PATCH".
 const char* ax_version(void);

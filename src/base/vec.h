@@ -54,3 +54,12 @@ static inline double ax_clamp(double x, double lo, double hi)
 {
     return x < lo ? lo : (x > hi ? hi : x);
 }
+
+// Distance of x from the segment a b in the plane.
+static inline double ax_segment_distance2(const double x[2], const double a[2], const double b[2])
+{
+    double d[2] = {b[0] - a[0], b[1] - a[1]}, length2 = d[0] * d[0] + d[1] * d[1];
+    double s = length2 > 0 ? ax_clamp(((x[0] - a[0]) * d[0] + (x[1] - a[1]) * d[1]) / length2, 0, 1) : 0;
+    double near[2] = {a[0] + s * d[0], a[1] + s * d[1]};
+    return ax_distance2(x, near);
+}
