@@ -39,6 +39,10 @@ ax_read_limits ax_read_limits_default(void); // 120 s, 6 GiB
 ax_status ax_mesh_read(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_mesh_repairs* repairs,
                        ax_error* error);
 
-// The same from arrays in memory, for meshes that a program makes: welds, drops, orients, validates in place. Faults
+// Reads whatever triangles a file has, as they stand: geometry to keep away from or to lie on, not to flatten. Only indices and
+// coordinates are checked. Limits and errors as above.
+ax_status ax_mesh_read_faces(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_error* error);
+
+// The same as ax_mesh_read from arrays in memory, for meshes that a program makes: welds, drops, orients, validates in place. Faults
 // are placed by the numbers of the arrays handed in. On failure the mesh is freed and empty.
 ax_status ax_mesh_make_surface(ax_mesh* mesh, ax_mesh_repairs* repairs, ax_error* error);

@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -216,20 +217,56 @@ static ax_status parse(const char* path, const ax_read_limits* limits, ax_mesh* 
     return received ? AX_OK : explain(&p, ended, path, limits, error);
 }
 
-ax_status ax_mesh_read(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_mesh_repairs* repairs,
-                       ax_error* error)
+static ax_status read_faces(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_vertex_order* order,
+                            ax_error* error)
 {
     ax_read_limits standard = ax_read_limits_default();
     limits = limits ? limits : &standard;
     assert(limits->seconds > 0 && limits->bytes > 0);
     *mesh = (ax_mesh){0};
-    ax_vertex_order order;
     ax_status status = check_file(path, error);
-    if (status == AX_OK)
-        status = parse(path, limits, mesh, &order, error);
+    return status == AX_OK ? parse(path, limits, mesh, order, error) : status;
+}
+
+ax_status ax_mesh_read(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_mesh_repairs* repairs,
+                       ax_error* error)
+{
+    ax_vertex_order order;
+    ax_status status = read_faces(path, limits, mesh, &order, error);
     if (status != AX_OK)
         return status;
     ax_error inner;
     status = ax_surface_make(mesh, order, repairs, &inner);
     return status == AX_OK ? AX_OK : ax_fail(error, status, "%s: %s", path, inner.message);
+}
+
+// The parser is not trusted, see stream.h.
+static bool is_sound(const ax_mesh* mesh)
+{
+    for (int c = 0; c < 3 * mesh->face_count; ++c) {
+        int v = mesh->faces[c / 3][c % 3];
+        if (v < 0 || v >= mesh->vertex_count)
+            return false;
+    }
+    for (int k = 0; k < 3 * mesh->vertex_count; ++k)
+        if (!(fabs(mesh->positions[k / 3][k % 3]) <= 1e60)) // squares stay finite
+            return false;
+    return true;
+}
+
+ax_status ax_mesh_read_faces(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_error* error)
+{
+    ax_vertex_order order;
+    ax_status status = read_faces(path, limits, mesh, &order, error);
+    if (status != AX_OK)
+        return status;
+    if (mesh->face_count == 0)
+        status = ax_fail(error, AX_BAD_INPUT, "%s holds no faces. Export surfaces or solids as triangles.", path);
+    else if (!is_sound(mesh))
+        status = ax_fail(error, AX_BAD_INPUT,
+                         "%s has faces without corners, or corners that are at no finite place. Export the mesh again.",
+                         path);
+    if (status != AX_OK)
+        ax_mesh_free(mesh);
+    return status;
 }
