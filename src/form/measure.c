@@ -332,7 +332,7 @@ static void measure_held(ax_form* f, ax_form_report* r)
         *to = (ax_held_figure){.name = "boundary", .kind = rim_names[f->rim[k].kind], .count = f->rim[k].count};
         to->residual = rim_residual(f, k, x);
         to->multiplier =
-            s ? largest_multiplier(s, g->rim[k], f->rim[k].kind == AX_RIM_FIXED ? f->rim[k].count : 1) / mean : 0;
+            s && g->rim ? largest_multiplier(s, g->rim[k], f->rim[k].kind == AX_RIM_FIXED ? f->rim[k].count : 1) / mean : 0;
     }
     for (int k = 0; k < f->held_count; ++k) {
         const ax_form_constraint* c = f->held + k;

@@ -117,8 +117,6 @@ ax_status ax_linkage_check(const ax_linkage* linkage, ax_error* error)
     return status;
 }
 
-// Rows count A, B, ... Z, AA, ... from row 0 up and -A, -B, ... from row -1 down; places within a row 1, 2, ... and -1, -2, ...
-// likewise. Names that were counted from the first row in use would change with every edit of the rim.
 int ax_linkage_rim(const ax_linkage* linkage, int* order)
 {
     int n = linkage->hinge_count, count = 0;
@@ -149,6 +147,8 @@ int ax_linkage_rim(const ax_linkage* linkage, int* order)
     return count;
 }
 
+// Rows count A, B, ... Z, AA, ... from row 0 up and -A, -B, ... from row -1 down; places within a row 1, 2, ... and -1, -2, ...
+// likewise. Names that were counted from the first row in use would change with every edit of the rim.
 void ax_panel_name(const ax_linkage* linkage, int triangle, char text[16])
 {
     assert(triangle >= 0 && triangle < linkage->triangle_count);
