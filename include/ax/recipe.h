@@ -20,14 +20,16 @@ typedef struct ax_points {
 } ax_points;
 
 typedef struct ax_field {
-    const char *name, *title, *unit, *doc; // unit: "", "length", "deg", "kg/m2", "Pa", ...
+    const char *name, *title, *unit, *doc; // unit: "", "length", "length2", "deg", "kg/m2", "Pa", "rad/length2", ...
     ax_field_kind kind;
     bool required;
     size_t offset; // in the operator's arguments
-    int width;
-    double lo, hi;
+    int width;     // numbers in a vector or point
+    double lo, hi; // range of numbers (each one of vectors and points); of texts and points: fewest and most
+    bool open;     // lo itself is out of range
     const char* const* choices;
     int choice_count;
+    const char* fallback; // the default in words, where it is no value: "the centre of the sheet"; NULL: see `defaults`
 } ax_field;
 
 typedef struct ax_operator_context {
@@ -38,20 +40,27 @@ typedef struct ax_operator_context {
 } ax_operator_context;
 
 typedef struct ax_operator_type {
-    const char *name, *title, *doc, *reference;
+    const char *name, *title, *doc, *reference; // reference: where the method is from, NULL: nowhere in particular
     const char* group; // "start", "scale", "boundary", "dynamics", "constraint", "selection", "site", "finish"
     const ax_field* fields;
     int field_count;
     size_t size;               // of the arguments
-    void (*defaults)(void* a); // fills zeroed arguments
-    bool starts;               // makes the form: only at the first place
-    bool settles;              // the form is settled after it
+    void (*defaults)(void* a); // fills zeroed arguments; NULL: zeros are the defaults. NaN in a number: not given
+    // What must hold between fields: NULL, or what is wrong in words, and *field the one to blame (-1: the whole). NULL: nothing.
+    const char* (*check)(const void* arguments, int* field);
+    bool starts;  // makes the form: only at the first place
+    bool settles; // the form is settled after it, for as many iterations as its integer field "steps" says (0: until at rest)
+    // On failure the form is as it was.
     ax_status (*apply)(const ax_operator_context* context, const void* arguments, ax_error* error);
 } ax_operator_type;
 
 // All operators, in order of their names; one by name, NULL if there is none.
 const ax_operator_type* const* ax_operator_types(int* count);
 const ax_operator_type* ax_operator_find(const char* name);
+
+// Hinges by words, the way every field called "hinges" takes them: docs/recipes.md, "Selections". In order, each once; owned by the
+// caller (ax_free). AX_BAD_INPUT says what is wrong with the words; an empty set is no error.
+ax_status ax_select(ax_form* form, const char* words, int** hinges, int* count, ax_error* error);
 
 // A recipe in memory. Operators are kept as JSON text, one object each: {"op": "paint", ...}.
 typedef struct ax_recipe ax_recipe;

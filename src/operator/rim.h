@@ -1,0 +1,40 @@
+// Editing what the rim is held by, one part at a time.
+#pragma once
+
+#include "operator/operator.h"
+
+// A copy of the form's parts that may be changed; all of it owned.
+typedef struct ax_rim {
+    int count;
+    ax_rim_part* parts;
+} ax_rim;
+
+ax_rim ax_rim_copy(const ax_form* form);
+void ax_rim_free(ax_rim* rim);
+// Hinges that come to belong to another part leave those they are in; parts that lose all are gone.
+void ax_rim_take_out(ax_rim* rim, int count, const int* hinges);
+// The part that holds a hinge, NULL if none does.
+ax_rim_part* ax_rim_part_of(ax_rim* rim, int hinge);
+void ax_rim_set_points(ax_rim_part* part, int count, const double (*points)[3]);
+
+// Hinges of the rim by words, in their order round it; AX_BAD_INPUT if one is not on the rim. Owned by the caller.
+ax_status ax_rim_hinges(const ax_operator_context* context, const char* words, int** hinges, int* count,
+                        ax_error* error);
+// Lets the hinges that `words` choose slide on a curve, in place of what held them.
+ax_status ax_rim_slide(const ax_operator_context* context, const char* words, const ax_curve_shape* curve,
+                       ax_error* error);
+
+#define AX_RIM_HINGES(T)                                                                                               \
+    AX_TEXT(T, hinges, "Hinges", .doc = "Selection of rim hinges that it holds, in place of what held them.")
+
+// Operators on one control point of the curve that a part slides on.
+typedef struct ax_control {
+    const char* hinges; // the first one chooses the part
+    int point;
+    double at[3];
+} ax_control;
+typedef enum ax_control_edit { AX_CONTROL_MOVE, AX_CONTROL_ADD, AX_CONTROL_REMOVE } ax_control_edit;
+ax_status ax_rim_control(const ax_operator_context* context, const ax_control* control, ax_control_edit edit,
+                         ax_error* error);
+#define AX_CONTROL_PART(T)                                                                                             \
+    AX_TEXT(T, hinges, "Part", .doc = "Selection whose first hinge belongs to the part of the rim that is meant.")

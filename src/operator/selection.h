@@ -1,0 +1,36 @@
+// Sets of hinges by their place in the linkage and on the sheet.
+#pragma once
+
+#include "operator/operator.h"
+
+// Hinges in order, each once.
+typedef struct ax_hinges {
+    int count;
+    int* hinges;       // room for all; owned
+    unsigned char* in; // per hinge of the linkage; owned
+} ax_hinges;
+ax_hinges ax_hinges_make(const ax_linkage* linkage);
+void ax_hinges_free(ax_hinges* set);
+void ax_hinges_add(ax_hinges* set, int hinge);
+
+// The middle of the hinges' extents on the sheet.
+void ax_sheet_middle(const ax_form_view* view, double middle[2]);
+// The rim counter-clockwise on the sheet, from the hinge at the smallest angle from 0 about the sheet's middle.
+void ax_select_rim(const ax_form_view* view, ax_hinges* set);
+// The kagome line through two hinges, from rim to rim; false if no line runs through both.
+bool ax_select_line(const ax_linkage* linkage, int a, int b, ax_hinges* set);
+// The shortest way along panel edges from hinge a to b, on the sheet close to the straight line.
+void ax_select_curve(const ax_form_view* view, int a, int b, ax_hinges* set);
+// Hinges on the sheet within a box, bounds included.
+void ax_select_box(const ax_form_view* view, const double lo[2], const double hi[2], ax_hinges* set);
+// Hinges on the sheet within a distance of a polyline (or point), closed or not.
+void ax_select_near(const ax_form_view* view, int count, const double (*points)[2], bool closed, double distance,
+                    ax_hinges* set);
+
+// Places in `rim` (an order from ax_select_rim) at which the rim turns a corner, in order; *corners owned by the caller. 0 if the
+// rim is round or has more than 12.
+int ax_select_corners(const ax_form_view* view, int count, const int* rim, int** corners);
+
+// Names that users give to selections and constraints: 1 to 48 letters, digits, "-", "_" or ".", the first a letter.
+bool ax_is_name(const char* text);
+extern const char ax_no_name[]; // the sentence that says so
