@@ -4,7 +4,8 @@
 //
 // A problem is dyn:N or static:N (6 N^2 triangles) or a file. Plain local/global iterations in double precision, in turn with
 // ShapeOp (the library of Bouaziz et al. and Deuss et al. 2015), loaded from a library built from its own sources with -O3
-// -march=native and OpenMP, and left out without it. Every measurement is a process of its own, so that memory is that of one job.
+// -march=native and OpenMP, and left out without it. Acceleration and multipliers have rows of their own. Every measurement is a
+// process of its own, so that memory is that of one job.
 #include "kagome.h"
 
 #include "base/clock.h"
@@ -25,6 +26,7 @@ enum {
     MOST_PROBLEMS = 32,
     MOST_CLASSES = 16,
     MARKS = 5,
+    WINDOW = 5,             // of Anderson acceleration
     MOST_COMPARED = 310000, // triangles up to which ShapeOp is run
 };
 static const int marks[MARKS] = {10, 30, 100, 300, 1000};
@@ -227,6 +229,7 @@ typedef struct job {
     const kagome* k;
     const shapeop* api; // NULL: ours alone
     int threads, repeats, deepest;
+    int window; // of Anderson acceleration, 0: plain iterations
 } job;
 
 // Iterations that one timing holds: about a tenth of a second, whole time steps.
@@ -276,6 +279,7 @@ static row run_plain(const job* j)
     time_init(j, pool, &r);
     double(*x)[3] = ax_alloc((size_t)k->vertices, sizeof *x), ours[MOST_REPEATS], theirs[MOST_REPEATS];
     ax_solver* solver = prepared(k, pool, false);
+    ax_solver_accelerate(solver, j->window);
     void* other = j->api ? make_shapeop(j->api, k) : NULL;
     if (other)
         init_shapeop(j->api, other, k);
@@ -335,6 +339,7 @@ static row run_exact(const job* j)
     row r = {.threads = ax_pool_threads(pool), .exact_error = INFINITY};
     double(*x)[3] = ax_alloc((size_t)k->vertices, sizeof *x), rms;
     ax_solver* solver = prepared(k, pool, true);
+    ax_solver_accelerate(solver, j->window);
     double spent = ax_solver_count(solver).seconds_prepare;
     while (r.exact_error > 1e-10 && spent < patience) {
         double start = ax_seconds();
@@ -402,7 +407,7 @@ typedef struct result {
     char name[64];
     int triangles;
     bool dynamic;
-    row one, all, exact, memory;
+    row one, all, exact, memory, fast, fast_exact; // fast: with Anderson acceleration
 } result;
 
 static result measure(const char* name, const kagome* k, const shapeop* api, int repeats, int iterations)
@@ -410,7 +415,8 @@ static result measure(const char* name, const kagome* k, const shapeop* api, int
     int deepest = (int)fmin(iterations, WORK / k->triangles) / CHUNK * CHUNK;
     if (k->triangles > MOST_COMPARED || !k->regular)
         api = NULL;
-    job alone = {k, NULL, 1, repeats, CHUNK}, side = {k, api, 0, repeats, deepest < CHUNK ? CHUNK : deepest};
+    job alone = {k, NULL, 1, repeats, CHUNK, 0}, side = {k, api, 0, repeats, deepest < CHUNK ? CHUNK : deepest, 0};
+    job fast = {k, NULL, 0, repeats, side.deepest, WINDOW};
     result r = {.triangles = k->triangles, .dynamic = k->dynamic};
     const char* base = strrchr(name, '/');
     snprintf(r.name, sizeof r.name, "%s", base ? base + 1 : name);
@@ -420,7 +426,33 @@ static result measure(const char* name, const kagome* k, const shapeop* api, int
     r.one = in_child(run_plain, &alone);
     r.all = in_child(run_plain, &side);
     r.exact = in_child(run_exact, &side);
+    r.fast = in_child(run_plain, &fast);
+    r.fast_exact = in_child(run_exact, &fast);
     return r;
+}
+
+static void print_errors(const char* kind, const row* a)
+{
+    for (int m = 0; m < MARKS && a->rms[m] > 0; ++m) {
+        printf("  %s, after %4d: edge error max %.4e rms %.4e", kind, marks[m], a->max[m], a->rms[m]);
+        if (a->shapeop_rms[m] > 0)
+            printf(", ShapeOp's differ by %.0e / %.0e", fabs(a->max[m] / a->shapeop_max[m] - 1),
+                   fabs(a->rms[m] / a->shapeop_rms[m] - 1));
+        printf("\n");
+    }
+    if (a->to_milli > 0)
+        printf("  %s, edge error 1e-3: %.3f s\n", kind, a->to_milli);
+}
+
+static void print_exact(const char* kind, const row* a)
+{
+    printf("  %s, with multipliers, edges and rim alone: ", kind);
+    if (a->exact_milli > 0)
+        printf("1e-3 in %.3f s, ", a->exact_milli);
+    if (a->exact > 0)
+        printf("1e-10 in %.3f s (%d iterations)\n", a->exact, a->exact_iterations);
+    else
+        printf("%.1e after %d iterations\n", a->exact_error, a->exact_iterations);
 }
 
 static void print_result(const result* r)
@@ -444,23 +476,11 @@ static void print_result(const result* r)
                 "             ShapeOp: init %.4f s, %.3f ms: ours %.2f of its init, %.1f times faster an iteration\n",
                 a->shapeop_init, a->shapeop_ms, a->init / a->shapeop_init, a->shapeop_ms / a->ms);
     }
-    for (int m = 0; m < MARKS && r->all.rms[m] > 0; ++m) {
-        const row* a = &r->all;
-        printf("  after %4d: edge error max %.4e rms %.4e", marks[m], a->max[m], a->rms[m]);
-        if (a->shapeop_rms[m] > 0)
-            printf(", ShapeOp's differ by %.0e / %.0e", fabs(a->max[m] / a->shapeop_max[m] - 1),
-                   fabs(a->rms[m] / a->shapeop_rms[m] - 1));
-        printf("\n");
-    }
-    if (r->all.to_milli > 0)
-        printf("  edge error 1e-3 by plain iterations: %.3f s\n", r->all.to_milli);
-    printf("  by multipliers, edges and rim alone: ");
-    if (r->exact.exact_milli > 0)
-        printf("1e-3 in %.3f s, ", r->exact.exact_milli);
-    if (r->exact.exact > 0)
-        printf("1e-10 in %.3f s (%d iterations)\n", r->exact.exact, r->exact.exact_iterations);
-    else
-        printf("%.1e after %d iterations\n", r->exact.exact_error, r->exact.exact_iterations);
+    print_errors("plain", &r->all);
+    print_errors("accelerated", &r->fast);
+    printf("  accelerated: %.3f ms an iteration\n", r->fast.ms);
+    print_exact("plain", &r->exact);
+    print_exact("accelerated", &r->fast_exact);
     fflush(stdout);
 }
 
@@ -493,7 +513,7 @@ static void write_row(FILE* file, const char* name, const row* r)
     if (r->shapeop_ms > 0)
         fprintf(file, ", \"shapeop_init_s\": %.6g, \"shapeop_ms\": %.6g", r->shapeop_init, r->shapeop_ms);
     if (r->to_milli > 0)
-        fprintf(file, ", \"plain_to_1e-3_s\": %.6g", r->to_milli);
+        fprintf(file, ", \"to_1e-3_s\": %.6g", r->to_milli);
     fprintf(file, ", \"errors\": [");
     for (int m = 0; m < MARKS && r->rms[m] > 0; ++m) {
         fprintf(file, "%s{\"iterations\": %d, \"max\": %.9g, \"rms\": %.9g", m ? ", " : "", marks[m], r->max[m],
@@ -503,6 +523,16 @@ static void write_row(FILE* file, const char* name, const row* r)
         fprintf(file, "}");
     }
     fprintf(file, "]}");
+}
+
+static void write_exact(FILE* file, const char* name, const row* r)
+{
+    fprintf(file, ",\n   \"%s\": {\"iterations\": %d, \"edge_error\": %.3g", name, r->exact_iterations, r->exact_error);
+    if (r->exact_milli > 0)
+        fprintf(file, ", \"to_1e-3_s\": %.6g", r->exact_milli);
+    if (r->exact > 0)
+        fprintf(file, ", \"to_1e-10_s\": %.6g", r->exact);
+    fprintf(file, "}");
 }
 
 static void write_result(FILE* file, const result* r, bool first)
@@ -515,13 +545,10 @@ static void write_result(FILE* file, const result* r, bool first)
         fprintf(file, ", \"shapeop_peak_bytes\": %.0f", r->memory.shapeop_peak);
     write_row(file, "one_thread", &r->one);
     write_row(file, "all_threads", &r->all);
-    fprintf(file, ",\n   \"multipliers\": {\"iterations\": %d, \"edge_error\": %.3g", r->exact.exact_iterations,
-            r->exact.exact_error);
-    if (r->exact.exact_milli > 0)
-        fprintf(file, ", \"to_1e-3_s\": %.6g", r->exact.exact_milli);
-    if (r->exact.exact > 0)
-        fprintf(file, ", \"to_1e-10_s\": %.6g", r->exact.exact);
-    fprintf(file, "}}");
+    write_row(file, "accelerated", &r->fast);
+    write_exact(file, "multipliers", &r->exact);
+    write_exact(file, "accelerated_multipliers", &r->fast_exact);
+    fprintf(file, "}");
 }
 
 static bool open_problem(const char* name, kagome* k)
