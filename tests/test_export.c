@@ -123,7 +123,7 @@ static void exporters_are_listed_by_ending_and_complete(void** state)
         assert_int_equal(types[k]->doc[strlen(types[k]->doc) - 1], '.');
         assert_true(types[k]->states[AX_STATE_DEFAULT]);
         assert_true(types[k]->default_state != AX_STATE_DEFAULT && types[k]->states[types[k]->default_state]);
-        assert_non_null(types[k]->write);
+        assert_true(!types[k]->write != !types[k]->write_sheet);
     }
 }
 
@@ -675,6 +675,18 @@ static const char* layer(const char* text, const char* name, const char** end)
     return found;
 }
 
+static int panel_named(const ax_linkage* l, const char* wanted)
+{
+    for (int t = 0; t < l->triangle_count; ++t) {
+        char name[16];
+        ax_panel_name(l, t, name);
+        if (strcmp(name, wanted) == 0)
+            return t;
+    }
+    fail_msg("there is no panel %s", wanted);
+    return -1;
+}
+
 // All that must hold of a cut file, whatever the unit: `mm` per document unit. Returns the number of labelled panels.
 static int check_cut_file(const ax_design* design, double mm, const char* text)
 {
@@ -685,25 +697,28 @@ static int check_cut_file(const ax_design* design, double mm, const char* text)
         sscanf(size, "width=\"%lfmm\" height=\"%lfmm\" viewBox=\"0 0 %lf %lf\"", &width, &height, &box[0], &box[1]), 4);
     assert_near(width, box[0], 0);
     assert_near(height, box[1], 0);
-    const char *label_end, *cut_end, *note_end, *labels = layer(text, "LABEL", &label_end);
+    const char *label_end = text, *cut_end, *note_end, *labels = text; // no layer of labels if there are none
+    if (strstr(text, "id=\"LABEL\""))
+        labels = layer(text, "LABEL", &label_end);
     const char *cuts = layer(text, "CUT", &cut_end), *notes = layer(text, "NOTE", &note_end);
     assert_true(labels < cuts && cuts < notes); // in the order of work
 
     double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY}, shift[2] = {0, 0};
-    char id[40], style[200], name[16], expected[40];
+    char id[40], style[200];
+    bool met[1000] = {false};
     stroke s;
     int t = 0;
     for (; next_path(&cuts, cut_end, id, style, &s); ++t) {
         assert_in_range(t, 0, l->triangle_count - 1);
         assert_string_equal(style, "fill=\"none\" stroke=\"#ff0000\" stroke-width=\"0.1\"");
-        ax_panel_name(l, t, name);
-        snprintf(expected, sizeof expected, "cut-%s", name);
-        assert_string_equal(id, expected);
+        int panel = panel_named(l, id + strlen("cut-"));
+        assert_false(met[panel]);
+        met[panel] = true;
         assert_true(s.closed && s.count == 3);
         for (int k = 0; k < 3; ++k)
             for (int d = 0; d < 2; ++d) {
                 // true size, y turned over: one shift fits all corners
-                double place = (d ? -1 : 1) * mm * design->flat[l->triangles[t][k]][d];
+                double place = (d ? -1 : 1) * mm * design->flat[l->triangles[panel][k]][d];
                 if (t == 0 && k == 0)
                     shift[d] = s.points[k][d] - place;
                 assert_near(s.points[k][d], place + shift[d], 1.0001e-4);
@@ -716,18 +731,15 @@ static int check_cut_file(const ax_design* design, double mm, const char* text)
     assert_true(lo[0] > 5 && lo[1] > 5 && hi[0] < width - 5 && hi[1] < height - 5);
 
     int labelled = 0;
-    for (t = 0; next_path(&labels, label_end, id, style, &s); ++t, ++labelled) {
+    for (; next_path(&labels, label_end, id, style, &s); ++labelled) {
         assert_string_equal(style, "fill=\"none\" stroke=\"#000000\" stroke-width=\"0.1\"");
-        do // panels without a label are passed over
-            ax_panel_name(l, t, name);
-        while (strcmp(id + strlen("label-"), name) != 0 && ++t < l->triangle_count);
-        assert_true(t < l->triangle_count);
+        int panel = panel_named(l, id + strlen("label-"));
         double top = INFINITY, bottom = -INFINITY;
         for (int i = 0; i < s.count; ++i) {
             double p[3][2];
             for (int k = 0; k < 3; ++k) {
-                p[k][0] = mm * design->flat[l->triangles[t][k]][0] + shift[0];
-                p[k][1] = -mm * design->flat[l->triangles[t][k]][1] + shift[1];
+                p[k][0] = mm * design->flat[l->triangles[panel][k]][0] + shift[0];
+                p[k][1] = -mm * design->flat[l->triangles[panel][k]][1] + shift[1];
             }
             for (int k = 0; k < 3; ++k) // y points down, so the corners run clockwise
                 assert_true(ax_orient2(p[k], p[(k + 1) % 3], s.points[i]) < 0);
@@ -824,6 +836,52 @@ static void svg_is_well_formed_whatever_the_title(void** state)
     free(text);
 }
 
+static void sheets_are_files_beside_an_overview(void** state)
+{
+    (void)state;
+    ax_fabricate_options fabricate = ax_fabricate_options_default();
+    ax_error error;
+    ax_cut_plan plan;
+    assert_int_equal(ax_fabricate_set_joint(&fabricate, "ring", &error), AX_OK);
+    assert_int_equal(ax_fabricate_set_material(&fabricate, "plywood-3", &error), AX_OK);
+    fabricate.sheet[0] = 900, fabricate.sheet[1] = 600;
+    const ax_export_options options = {.title = "dome", .fabricate = &fabricate, .plan = &plan};
+    if (ax_export(&sample, in_folder("dome.svg"), &options, &error) != AX_OK)
+        fail_msg("%s", error.message);
+    assert_in_range(plan.sheet_count, 2, 20);
+    int cuts = 0, holes = 0;
+    for (int s = 0; s <= plan.sheet_count; ++s) {
+        char name[40];
+        snprintf(name, sizeof name, s ? "dome-%d.svg" : "dome.svg", s);
+        size_t size;
+        char* text = read_bytes(in_folder(name), &size);
+        const char* cut = strstr(text, "id=\"CUT\"");
+        assert_int_equal(cut != NULL, s > 0); // nothing of the overview is to be cut
+        assert_int_equal(strstr(text, "width=\"900mm\" height=\"600mm\" viewBox=\"0 0 900 600\"") != NULL, s > 0);
+        for (const char* at = text; (at = strstr(at, "<path id=\"cut-")); ++at)
+            ++cuts;
+        for (const char* at = text; (at = strstr(at, "<path id=\"hole-")); ++at)
+            ++holes;
+        free(text);
+    }
+    assert_int_equal(cuts, sample.linkage.triangle_count);
+    assert_int_equal(holes, 3 * sample.linkage.triangle_count);
+    assert_int_equal(clear_folder(), plan.sheet_count + 1);
+    ax_cut_plan_free(&plan);
+}
+
+static void coupons_go_to_cut_files_only(void** state)
+{
+    (void)state;
+    ax_cut_plan plan;
+    ax_error error;
+    assert_int_equal(ax_fabricate_coupon(AX_COUPON_KERF, NULL, &plan, &error), AX_OK);
+    assert_int_equal(ax_export_plan(&plan, in_folder("kerf.svg"), &error), AX_OK);
+    assert_int_equal(ax_export_plan(&plan, in_folder("kerf.obj"), &error), AX_USAGE);
+    assert_int_equal(clear_folder(), 1);
+    ax_cut_plan_free(&plan);
+}
+
 // --- the stroke font
 
 typedef struct drawing {
@@ -900,6 +958,8 @@ int main(void)
         cmocka_unit_test(svg_labels_only_panels_that_can_hold_two_millimetres),
         cmocka_unit_test(svg_is_the_same_wherever_the_design_lies),
         cmocka_unit_test(svg_is_well_formed_whatever_the_title),
+        cmocka_unit_test(sheets_are_files_beside_an_overview),
+        cmocka_unit_test(coupons_go_to_cut_files_only),
         cmocka_unit_test(letters_differ_and_keep_to_their_cells),
         cmocka_unit_test(text_is_set_letter_by_letter),
     };
