@@ -289,6 +289,29 @@ static void closest_points_agree_with_brute_force(void** state)
     }
 }
 
+static void a_mesh_is_a_place_for_constraints(void** state)
+{
+    (void)state;
+    ax_mesh mesh = shape_cap(20, 1);
+    ax_closest* tree = ax_closest_make(&mesh);
+    ax_place place = ax_closest_place(tree);
+    ax_random random = {7};
+    for (int k = 0; k < 100; ++k) {
+        double x[3], p[3];
+        for (int c = 0; c < 3; ++c)
+            x[c] = ax_random_uniform(&random, -2, 2);
+        place.nearest(place.geometry, x, p);
+        ax_closest_point found = ax_closest_find(tree, x, -1);
+        assert_memory_equal(p, found.point, sizeof p);
+    }
+    // what is beyond all numbers stays, so that a solver that diverges is seen to
+    double far[3] = {1e200, 0, NAN}, p[3];
+    place.nearest(place.geometry, far, p);
+    assert_memory_equal(p, far, sizeof p);
+    ax_closest_free(tree);
+    ax_mesh_free(&mesh);
+}
+
 static void ties_go_to_the_lowest_face(void** state)
 {
     (void)state;
@@ -410,6 +433,7 @@ int main(void)
         cmocka_unit_test(mean_curvature_of_a_sphere_is_one_over_its_radius),
         cmocka_unit_test(normals_of_a_sphere_point_outward),
         cmocka_unit_test(closest_points_agree_with_brute_force),
+        cmocka_unit_test(a_mesh_is_a_place_for_constraints),
         cmocka_unit_test(ties_go_to_the_lowest_face),
         cmocka_unit_test(a_million_faces_are_searchable_in_seconds),
         cmocka_unit_test(polyline_agrees_with_brute_force),
