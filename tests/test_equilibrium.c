@@ -668,9 +668,8 @@ static void a_uniform_patch_is_blocked_at_its_lambda(void** state)
 // ---- a dome from many starts
 
 // A cap of the unit sphere by stereographic projection of the open lattice: panels have the edges they have there, the rim is held
-// there. Fairness along both kagome lines through every hinge, weak: without it wrinkles slide for thousands of iterations.
-static ax_solver* make_dome(const ax_lattice* lattice, double fairness, ax_load_type const* load, loops* all,
-                            double (*dome)[3])
+// there.
+static ax_solver* make_dome(const ax_lattice* lattice, const ax_load_type* load, const loops* all, double (*dome)[3])
 {
     const ax_linkage* linkage = &lattice->linkage;
     int n = linkage->hinge_count, count, *rim = list_rim(linkage, &count);
@@ -682,63 +681,51 @@ static ax_solver* make_dome(const ax_lattice* lattice, double fairness, ax_load_
     int panels = ax_solver_add(s, type("rigid_triangle"), 3, linkage->triangle_count, linkage->triangles[0], 1, NULL);
     ax_solver_add(s, type("fixed"), 1, count, rim, 0, NULL);
     ax_free(rim);
-    int(*pair)[2] = ax_linkage_hinge_triangles(linkage), *line = AX_NEW(int, 6 * n), lines = 0;
-    for (int h = 0; h < n; ++h)
-        for (int k = 0; k < 9 && pair[h][1] >= 0; ++k) { // corners of both panels with the hinge midway
-            int a = linkage->triangles[pair[h][0]][k / 3], b = linkage->triangles[pair[h][1]][k % 3];
-            double off = 0;
-            for (int c = 0; c < 2; ++c)
-                off += fabs(lattice->hinges[a][c] + lattice->hinges[b][c] - 2 * lattice->hinges[h][c]);
-            if (a != h && b != h && off < 1e-9 * lattice->spacing)
-                line[3 * lines] = h, line[3 * lines + 1] = a, line[3 * lines + 2] = b, ++lines;
-        }
-    if (fairness > 0)
-        ax_solver_set_soft(s, ax_solver_add(s, type("laplacian"), 3, lines, line, fairness, NULL), true);
-    ax_free(pair);
-    ax_free(line);
     ax_solver_add_load(s, load, load->follows ? all->count : all->panels, all->start, all->points);
     ax_solver_use_multipliers(s, true);
     ax_solver_scale_loads(s, 0.1 / ax_solver_load_ratio(s, panels));
     return s;
 }
 
-// Twenty random starts about the flat sheet, for which nothing but the rim's places is known, find one shape.
+// Twenty random starts about the flat sheet, for which nothing but the rim's places is known, find one shape under either load, the
+// sphere nearly.
 static void random_starts_find_one_dome(void** state)
 {
     (void)state;
     enum { STARTS = 20, SEED = 41 };
     ax_lattice lattice = make_patch(0.2);
-    const ax_linkage* linkage = &lattice.linkage;
-    int n = linkage->hinge_count;
-    loops all = collect(linkage);
+    int n = lattice.linkage.hinge_count;
+    loops all = collect(&lattice.linkage);
     double(*dome)[3] = ax_alloc((size_t)n, sizeof *dome), (*x)[3] = ax_alloc((size_t)n, sizeof *x);
-    double(*first)[3] = ax_alloc((size_t)n, sizeof *x), apart = 0, off = 0;
+    double(*first)[3] = ax_alloc((size_t)n, sizeof *x);
     print_message("seed %d\n", SEED);
-    for (int start = 0; start < STARTS; ++start) {
-        ax_solver* s = make_dome(&lattice, 0.02, ax_load_find("pressure"), &all, dome);
-        ax_random random = {SEED + (uint64_t)start};
-        for (int h = 0; h < n; ++h)
-            for (int c = 0; c < 3; ++c) {
-                double flat = c < 2 ? 0.88 * lattice.hinges[h][c] : 0.47;
-                x[h][c] = flat + ax_random_uniform(&random, c < 2 ? -0.05 : 0, 0.05);
+    for (int inflated = 0; inflated < 2; ++inflated) {
+        double apart = 0, off = 0;
+        for (int start = 0; start < STARTS; ++start) {
+            ax_solver* s = make_dome(&lattice, ax_load_find(inflated ? "pressure" : "gravity"), &all, dome);
+            ax_random random = {SEED + (uint64_t)start};
+            for (int h = 0; h < n; ++h)
+                for (int c = 0; c < 3; ++c) {
+                    double flat = c < 2 ? 0.88 * lattice.hinges[h][c] : 0.47;
+                    x[h][c] = flat + ax_random_uniform(&random, c < 2 ? -0.05 : 0, 0.05);
+                }
+            ax_solver_set_places(s, (const double(*)[3])x);
+            ax_solver_accelerate(s, 5);
+            ax_settle settle = AX_SETTLE_STANDARD;
+            settle.force = settle.primal = 1e-7;
+            assert_int_equal(ax_solver_settle(s, &settle, NULL).end, AX_SETTLE_DONE);
+            ax_solver_get_places(s, x);
+            if (start == 0)
+                memcpy(first, x, (size_t)n * sizeof *x);
+            for (int h = 0; h < n; ++h) {
+                apart = fmax(apart, ax_distance3(x[h], first[h]));
+                off = fmax(off, ax_distance3(x[h], dome[h]));
             }
-        ax_solver_set_places(s, (const double(*)[3])x);
-        ax_settle settle = AX_SETTLE_STANDARD;
-        settle.force = settle.primal = 1e-7;
-        ax_settled result = ax_solver_settle(s, &settle, NULL);
-        assert_int_equal(result.end, AX_SETTLE_DONE);
-        ax_solver_get_places(s, x);
-        if (start == 0)
-            memcpy(first, x, (size_t)n * sizeof *x);
-        for (int h = 0; h < n; ++h) {
-            apart = fmax(apart, ax_distance3(x[h], first[h]));
-            off = fmax(off, ax_distance3(x[h], dome[h]));
+            ax_solver_free(s);
         }
-        ax_solver_free(s);
+        assert_at_most(apart, 1e-6);
+        assert_at_most(off, 0.1 * lattice.spacing);
     }
-    print_message("%d panels: %g apart, %g from the sphere\n", linkage->triangle_count, apart, off);
-    assert_at_most(apart, 1e-5);
-    assert_at_most(off, 0.3 * lattice.spacing);
     free_loops(&all);
     ax_free(dome);
     ax_free(x);

@@ -66,9 +66,9 @@ void ax_solver_free(ax_solver* s)
         }
         ax_free(s->loads[k].classes);
     }
-    void* blocks[] = {s->groups,         s->loads,    s->start,  s->point_force, s->stiffness, s->order, s->position,
-                      s->held,           s->x,        s->base,   s->velocity,    s->kept,      s->dead,  s->row,
-                      s->incident_start, s->incident, s->tallies};
+    void* blocks[] = {s->groups,   s->parts,          s->loads,    s->start,  s->point_force, s->stiffness, s->order,
+                      s->position, s->held,           s->x,        s->base,   s->velocity,    s->kept,      s->dead,
+                      s->row,      s->incident_start, s->incident, s->tallies};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_sparse_free(&s->held_matrix);
