@@ -91,7 +91,7 @@ void ax_solver_cap_multipliers(ax_solver* solver, double length);
 void ax_solver_accelerate(ax_solver* solver, int window);
 
 // Analyses and factorises what has changed; called by those below. False if the matrix is not positive definite: some point is
-// bound by nothing.
+// bound by nothing. (A structure that floats as a whole may pass by rounding: hold a point of it.)
 bool ax_solver_prepare(ax_solver* solver);
 // Plain local/global iterations. False as above.
 bool ax_solver_iterate(ax_solver* solver, int iterations);
@@ -104,7 +104,7 @@ double ax_solver_energy(ax_solver* solver);
 // Root mean square of |A x - p| over the rows of a group: its residual, in lengths.
 double ax_solver_residual(ax_solver* solver, int group);
 // Force left at every point (points x 3): loads minus sum w A'u, u = A x - p without multipliers. Zero in equilibrium; at a point
-// that is held, minus the reaction of its support.
+// that is held, minus the reaction of its support (which under pressure carries the membrane to the origin too, see pressure.c).
 void ax_solver_get_forces(ax_solver* solver, double (*force)[3]);
 
 // What a group contributes to a conflict. All in lengths, over rows.
