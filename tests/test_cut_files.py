@@ -1,0 +1,164 @@
+#!/usr/bin/python3
+"""Cut files as other programs read them: ezdxf, poppler, zip and csv. AUXSHELL names the program."""
+import csv
+import json
+import math
+import re
+import subprocess
+import unittest
+import xml.etree.ElementTree as ElementTree
+import zipfile
+
+import ezdxf
+
+import support.tap
+from support.command import SURFACES, CommandCase
+
+
+def distance(a, b):
+    return math.hypot(a[0] - b[0], a[1] - b[1])
+
+
+class CutFiles(CommandCase):
+    """One design, a small one in metres, and all of its files."""
+
+    def setUp(self):
+        super().setUp()
+        self.document = self.folder / "dome.auxshell"
+        self.succeed("design", SURFACES / "kidney_dome.obj", "-o", self.document, "--triangles", "200", "--units", "m")
+        self.design = json.loads(self.export("dome.json").read_text())
+        corners = [[self.design["flat"][h] for h in t] for t in self.design["triangles"]]
+        self.edges = [sorted(1000 * distance(t[k], t[(k + 1) % 3]) for k in range(3)) for t in corners]
+
+    def export(self, name, *words):
+        path = self.folder / name
+        self.succeed("export", self.document, "-o", path, *words)
+        return path
+
+    def read_dxf(self, path):
+        drawing = ezdxf.readfile(path)
+        audit = drawing.audit()
+        self.assertEqual([e.message for e in audit.errors + audit.fixes], [])
+        return drawing
+
+    def test_dxf_of_bare_panels_has_their_edges(self):
+        for name, version, kind in (("dome.dxf", "AC1015", "LWPOLYLINE"), ("dome.r12.dxf", "AC1009", "POLYLINE")):
+            drawing = self.read_dxf(self.export(name))
+            self.assertEqual(drawing.dxfversion, version)
+            if version == "AC1015":
+                self.assertEqual(drawing.header["$INSUNITS"], 4)
+                self.assertEqual(drawing.header["$MEASUREMENT"], 1)
+            cuts = [e for e in drawing.modelspace() if e.dxf.layer == "CUT"]
+            self.assertEqual({e.dxftype() for e in cuts}, {kind})
+            self.assertTrue(all(e.is_closed for e in cuts))
+            found = []
+            for e in cuts:
+                points = [p[:2] for p in e.get_points()] if kind == "LWPOLYLINE" else [v.dxf.location for v in e.vertices]
+                self.assertEqual(len(points), 3)
+                found.append(sorted(distance(points[k], points[(k + 1) % 3]) for k in range(3)))
+            self.assertEqual(len(found), len(self.edges))
+            for ours, theirs in zip(sorted(self.edges), sorted(found)):
+                for a, b in zip(ours, theirs):
+                    self.assertAlmostEqual(a, b, delta=0.01)
+
+    def test_dxf_of_ring_joints_counts_holes_and_outlines(self):
+        words = ("--joint", "ring", "--material", "plywood-3")
+        modern = self.read_dxf(self.export("dome.dxf", *words)).modelspace()
+        old = self.read_dxf(self.export("dome.r12.dxf", *words)).modelspace()
+        count = len(self.edges)
+        for space in (modern, old):
+            holes = [e for e in space if e.dxf.layer == "HOLE"]
+            self.assertEqual({e.dxftype() for e in holes}, {"CIRCLE"})
+            inner = sum(len(t) for t in self.design["triangles"])
+            self.assertLessEqual(len(holes), inner)
+            self.assertGreater(len(holes), 2 * count)
+            self.assertEqual(sum(1 for e in space if e.dxf.layer == "CUT"), count)
+        self.assertEqual(len({e.dxf.handle for e in modern}), len(modern))
+
+    def test_dxf_keeps_to_its_profile(self):
+        for profile in ("generic", "lightburn", "plotter"):
+            drawing = self.read_dxf(self.export("dome.dxf", "--profile", profile))
+            declared = {layer.dxf.name for layer in drawing.layers}
+            self.assertLessEqual({e.dxf.layer for e in drawing.modelspace()}, declared)
+
+    def pdf_pages(self, path):
+        text = subprocess.run(["pdfinfo", "-f", "1", "-l", "100000", path], capture_output=True, text=True, check=True).stdout
+        sizes = re.findall(r"Page +\d+ size: +([\d.]+) x ([\d.]+)", text)
+        return [tuple(float(x) * 25.4 / 72 for x in size) for size in sizes]
+
+    def test_pdf_has_a_page_of_true_size_for_every_sheet(self):
+        one = self.pdf_pages(self.export("dome.pdf"))
+        drawing = self.read_dxf(self.export("dome.dxf"))
+        self.assertEqual(len(one), 1)
+        for a, b in zip(one[0], drawing.header["$EXTMAX"]):
+            self.assertAlmostEqual(a, b, delta=2e-6 * b)  # pdfinfo prints six digits
+        sheets = self.pdf_pages(self.export("sheets.pdf", "--sheet", "3000x2000"))
+        self.assertGreater(len(sheets), 2)
+        for size in sheets[1:]:
+            self.assertAlmostEqual(size[0], 3000, delta=0.01)
+            self.assertAlmostEqual(size[1], 2000, delta=0.01)
+
+    def test_pdf_shows_the_panels(self):
+        """The whole drawing as pixels: about as much ink as the outlines have length."""
+        path = self.export("dome.pdf")
+        subprocess.run(["pdftoppm", "-r", "4", "-gray", path, self.folder / "page"], check=True)
+        image = next(self.folder.glob("page*.pgm")).read_bytes()
+        header = re.match(rb"P5\s+(\d+)\s+(\d+)\s+255\s", image)
+        ink = sum(1 for value in image[header.end():] if value < 250)
+        self.assertGreater(ink, 5000)
+
+    def test_tiles_cover_the_sheet(self):
+        tiles = self.pdf_pages(self.export("dome.a4.pdf"))
+        width, height = self.pdf_pages(self.export("dome.pdf"))[0]
+        self.assertEqual({tuple(round(x) for x in size) for size in tiles}, {(210, 297)})
+        self.assertEqual(len(tiles), math.ceil(width / 180) * math.ceil(height / 267))
+
+    def test_files_are_the_same_bytes_again(self):
+        for name in ("dome.dxf", "dome.r12.dxf", "dome.pdf", "dome.csv", "dome.3mf"):
+            first = self.export(name).read_bytes()
+            self.assertEqual(first, self.export(name).read_bytes(), name)
+
+    def test_schedule_lists_everything_once(self):
+        text = self.export("dome.csv", "--joint", "ring", "--material", "plywood-3").read_bytes().decode()
+        tables = [list(csv.DictReader(part.splitlines())) for part in text.split("\r\n\r\n")]
+        panels, hinges, parts, totals = tables
+        self.assertEqual(len(panels), len(self.edges))
+        self.assertEqual(len({row["panel"] for row in panels}), len(panels))
+        for row, edges in zip(panels, self.edges):
+            listed = sorted(float(row[f"edge {k} mm"]) for k in range(3))
+            for a, b in zip(listed, edges):
+                self.assertAlmostEqual(a, b, delta=0.01)
+        held = [h for t in self.design["triangles"] for h in t]
+        self.assertEqual(len(hinges), sum(1 for h in set(held) if held.count(h) == 2))
+        total = {row["total"]: float(row["value"]) for row in totals}
+        self.assertEqual(total["panels"], len(panels))
+        self.assertAlmostEqual(total["mass"] * 1000, sum(float(row["mass g"]) for row in panels), delta=1)
+        self.assertTrue(parts and all(int(row["count"]) > 0 for row in parts))
+
+    def test_3mf_holds_closed_prisms(self):
+        with zipfile.ZipFile(self.export("dome.3mf", "--material", "plywood-3")) as archive:
+            self.assertIsNone(archive.testzip())
+            model = ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+        space = {"m": "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"}
+        self.assertEqual(model.attrib["unit"], "millimeter")
+        objects = model.findall("m:resources/m:object", space)
+        self.assertEqual(len(objects), len(self.edges))
+        self.assertEqual(len(model.findall("m:build/m:item", space)), len(objects))
+        for body in objects[::37]:
+            points = [[float(v.attrib[c]) for c in "xyz"] for v in body.findall(".//m:vertex", space)]
+            sides, volume = {}, 0
+            for t in body.findall(".//m:triangle", space):
+                v = [int(t.attrib[f"v{k}"]) for k in (1, 2, 3)]
+                for k in range(3):
+                    sides[(v[k], v[(k + 1) % 3])] = sides.get((v[k], v[(k + 1) % 3]), 0) + 1
+                (a, b, c), (d, e, f), (g, h, i) = (points[n] for n in v)
+                volume += (a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)) / 6
+            self.assertTrue(all(n == 1 and (b, a) in sides for (a, b), n in sides.items()))
+            p = points[:3]
+            u, w = ([p[k][c] - p[0][c] for c in range(3)] for k in (1, 2))
+            cross = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]]
+            self.assertAlmostEqual(volume, 3 * math.hypot(*cross) / 2, delta=1e-3 * volume)
+
+
+if __name__ == "__main__":
+    support.tap.main()
