@@ -59,8 +59,7 @@ static double quantile(double* values, int count, double share)
     return values[(int)fmin(count - 1, floor(share * count))];
 }
 
-// The smaller of the two signed gaps at each hinge, radians; infinite where there is none. Owned by the caller.
-static double* smallest_mouths(const ax_linkage* linkage, const double (*flat)[2])
+double* ax_measure_mouth_angles(const ax_linkage* linkage, const double (*flat)[2])
 {
     int count;
     int(*mouth)[3] = ax_linkage_mouths(linkage, &count);
@@ -77,7 +76,7 @@ static double* smallest_mouths(const ax_linkage* linkage, const double (*flat)[2
 
 ax_mouth_measure ax_measure_mouths(const ax_linkage* linkage, const double (*flat)[2])
 {
-    double* smallest = smallest_mouths(linkage, flat);
+    double* smallest = ax_measure_mouth_angles(linkage, flat);
     ax_mouth_measure m = {.min_deg = INFINITY, .min_hinge = -1};
     int used = 0;
     for (int h = 0; h < linkage->hinge_count; ++h) {
@@ -191,7 +190,7 @@ void ax_measure_scale(const ax_linkage* linkage, const double (*flat)[2], double
 {
     int count = linkage->triangle_count;
     int(*owners)[2] = ax_linkage_hinge_triangles(linkage);
-    double(*centre)[2] = ax_calloc((size_t)count, sizeof *centre), *mouth = smallest_mouths(linkage, flat);
+    double(*centre)[2] = ax_calloc((size_t)count, sizeof *centre), *mouth = ax_measure_mouth_angles(linkage, flat);
     for (int t = 0; t < count; ++t)
         for (int k = 0; k < 3; ++k)
             for (int d = 0; d < 2; ++d)
@@ -252,9 +251,8 @@ void ax_measure_corner_force(const ax_linkage* linkage, const double (*places)[3
     }
 }
 
-// Load plus the pull of all edges at each hinge; zero at a free hinge in equilibrium. Owned by the caller.
-static double (*unbalanced(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
-                           const double (*loads)[3]))[3]
+double (*ax_measure_unbalanced(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
+                               const double (*loads)[3]))[3]
 {
     double(*sum)[3] = ax_copy(loads, (size_t)linkage->hinge_count, sizeof *sum);
     for (int t = 0; t < linkage->triangle_count; ++t)
@@ -270,7 +268,7 @@ static double (*unbalanced(const ax_linkage* linkage, const double (*places)[3],
 double ax_measure_force_residual(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
                                  const double (*loads)[3], const unsigned char* supports, const ax_slide* slides)
 {
-    double(*sum)[3] = unbalanced(linkage, places, edge_forces, loads), total = 0, left = 0;
+    double(*sum)[3] = ax_measure_unbalanced(linkage, places, edge_forces, loads), total = 0, left = 0;
     for (int h = 0; h < linkage->hinge_count; ++h) {
         total += ax_norm3(loads[h]);
         if (!supports[h])
@@ -300,7 +298,7 @@ void ax_measure_hinge_forces(const ax_linkage* linkage, const double (*places)[3
             ax_measure_corner_force(linkage, places, edge_forces, t, k, f);
             *hinge_max = fmax(*hinge_max, ax_norm3(f));
         }
-    double(*sum)[3] = unbalanced(linkage, places, edge_forces, loads);
+    double(*sum)[3] = ax_measure_unbalanced(linkage, places, edge_forces, loads);
     for (int h = 0; h < linkage->hinge_count; ++h)
         if (supports[h])
             *reactions += ax_norm3(sum[h]);

@@ -20,6 +20,9 @@ typedef struct ax_mouth_measure {
 } ax_mouth_measure;
 ax_mouth_measure ax_measure_mouths(const ax_linkage* linkage, const double (*flat)[2]);
 
+// The smaller of the two signed gaps at each hinge, radians; infinite where there is none. Owned by the caller.
+double* ax_measure_mouth_angles(const ax_linkage* linkage, const double (*flat)[2]);
+
 // Number of pairs of flat triangles whose interiors overlap by more than `depth` (separating axes over a grid); the first `most` of
 // them go to `pairs`.
 int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], double depth, int most, int (*pairs)[2]);
@@ -31,6 +34,11 @@ void ax_measure_scale(const ax_linkage* linkage, const double (*flat)[2], double
 
 // 5 %, 50 % and 95 % quantiles of the interior angles of six-hinged holes in space, degrees.
 void ax_measure_hole_angles(const ax_linkage* linkage, const double (*places)[3], double quantile[3]);
+
+// Load plus the pull of all edges at each hinge, N: nothing at a free hinge in equilibrium, at a support what it must bear. Owned by
+// the caller.
+double (*ax_measure_unbalanced(const ax_linkage* linkage, const double (*places)[3], const double (*edge_forces)[3],
+                               const double (*loads)[3]))[3];
 
 // |force| over the free hinges, and in the free directions of those that slide (`slides` NULL: none does) / total load, from
 // places, edge forces (N, per triangle and edge) and hinge loads (N).
