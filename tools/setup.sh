@@ -10,7 +10,7 @@ install_packages() {
     present=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' 2>/dev/null | sed -n 's/^installed //p')
     while read -r kind name; do
         [[ $kinds == *" $kind "* ]] || continue
-        grep -qxF -- "$name" <<<"$present" || missing+=("$name")
+        grep -qxF -- "$name" <<<"$present" || command -v -- "$name" >/dev/null || missing+=("$name")
     done < <(grep -v '^#' "$root/tools/packages.txt")
     ((${#missing[@]})) || return 0
 

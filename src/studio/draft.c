@@ -1,0 +1,107 @@
+#include "studio/draft.h"
+
+#include "studio/files.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { NAME_LETTERS = 8, LIST_MOST = 32 };
+static const char prefix[] = "draft-";
+static const char ending[] = ".auxshell";
+
+ax_status draft_new_id(char id[DRAFT_ID], ax_error* error)
+{
+    strcpy(id, prefix);
+    return secret_make(id + strlen(prefix), NAME_LETTERS, error);
+}
+
+static bool is_id(const char* id)
+{
+    return strncmp(id, prefix, strlen(prefix)) == 0 && strlen(id) == strlen(prefix) + NAME_LETTERS &&
+           strspn(id + strlen(prefix), "abcdefghijklmnopqrstuvwxyz0123456789") == NAME_LETTERS;
+}
+
+static void folder(char path[PATH_MAX])
+{
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    if (state && *state == '/')
+        snprintf(path, PATH_MAX, "%s/auxshell", state);
+    else
+        snprintf(path, PATH_MAX, "%s/.local/state/auxshell", home && *home ? home : "/tmp");
+}
+
+static void file(const char* id, char path[PATH_MAX + 64])
+{
+    char in[PATH_MAX];
+    folder(in);
+    snprintf(path, PATH_MAX + 64, "%s/%s%s", in, id, ending);
+}
+
+bool draft_exists(const char* id)
+{
+    char path[PATH_MAX + 64];
+    struct stat about;
+    if (!is_id(id))
+        return false;
+    file(id, path);
+    return stat(path, &about) == 0 && S_ISREG(about.st_mode);
+}
+
+ax_status draft_path(const char* id, char** path, ax_error* error)
+{
+    char in[PATH_MAX], whole[PATH_MAX + 64];
+    folder(in);
+    for (char* slash = in + 1; (slash = strchr(slash, '/'));
+         *slash++ = '/') { // private from the first part that is missing
+        *slash = 0;
+        mkdir(in, 0700);
+    }
+    struct stat about;
+    if (mkdir(in, 0700) != 0 && (stat(in, &about) != 0 || !S_ISDIR(about.st_mode)))
+        return ax_fail(error, AX_FAILED, "The folder %s for unsaved documents cannot be made: %s.", in,
+                       strerror(errno));
+    file(id, whole);
+    *path = ax_copy(whole, strlen(whole) + 1, 1);
+    return AX_OK;
+}
+
+static int newest_first(const void* a, const void* b)
+{
+    json_int_t x = json_integer_value(json_object_get(*(json_t* const*)a, "time"));
+    json_int_t y = json_integer_value(json_object_get(*(json_t* const*)b, "time"));
+    return (x < y) - (x > y);
+}
+
+json_t* draft_list(void)
+{
+    char in[PATH_MAX];
+    json_t* rows[256];
+    size_t count = 0;
+    folder(in);
+    DIR* open = opendir(in);
+    for (struct dirent* entry; open && count < sizeof rows / sizeof *rows && (entry = readdir(open));) {
+        char id[DRAFT_ID];
+        struct stat about;
+        size_t length = strlen(entry->d_name);
+        if (length <= strlen(ending) || strcmp(entry->d_name + length - strlen(ending), ending) != 0)
+            continue;
+        snprintf(id, sizeof id, "%.*s", (int)(length - strlen(ending)), entry->d_name);
+        if (is_id(id) && fstatat(dirfd(open), entry->d_name, &about, 0) == 0)
+            rows[count++] = json_pack("{s:s, s:I}", "name", id, "time", (json_int_t)about.st_mtime);
+    }
+    if (open)
+        closedir(open);
+    qsort(rows, count, sizeof *rows, newest_first);
+    json_t* list = json_array();
+    for (size_t k = 0; k < count; ++k)
+        if (k < LIST_MOST)
+            json_array_append_new(list, rows[k]);
+        else
+            json_decref(rows[k]);
+    return list;
+}

@@ -1,0 +1,17 @@
+// Documents that have no name yet: kept in the user's state folder ($XDG_STATE_HOME/auxshell, else ~/.local/state/auxshell), so that
+// a crash or a closed window loses nothing.
+#pragma once
+
+#include "ax/base.h"
+
+#include <jansson.h>
+
+enum { DRAFT_ID = 24 };
+
+// A name that no draft has: "draft-7f3kq2ma".
+ax_status draft_new_id(char id[DRAFT_ID], ax_error* error);
+bool draft_exists(const char* id);
+// Where a draft lies, owned by the caller; its folder is made. AX_FAILED when that cannot be.
+ax_status draft_path(const char* id, char** path, ax_error* error);
+// Drafts on disk, newest first: {name, time}.
+json_t* draft_list(void);

@@ -1,0 +1,106 @@
+// A desk's insides, and the commands that it carries out in order.
+#pragma once
+
+#include "studio/desk.h"
+#include "studio/session.h"
+#include "studio/shape.h"
+
+typedef struct job {
+    struct job* next;
+    int client;
+    message message;
+} job;
+
+typedef struct preview {
+    json_t* step; // null: ends it; NULL: there is none
+    int client;
+    unsigned serial;
+} preview;
+
+typedef struct grab {
+    bool wanted;
+    int hinge, client;
+    unsigned serial;
+    double to[3];
+} grab;
+
+// A named copy of the document.
+typedef struct variant {
+    char *name, *recipe;
+    void* form; // as ax_form_save gives it
+    size_t size;
+    int triangles, steps;
+    bool exact;
+    json_t* checks;
+} variant;
+
+struct desk {
+    hub* hub;
+    pthread_t thread;
+    bool threadless; // the thread could not be started
+    int opener, opener_re;
+    desk_source source;
+
+    // with the hub's lock
+    char* id;
+    pthread_cond_t work, open;
+    bool opened, ended;
+    ax_error fault; // why it is not open
+    job *first, **last;
+    preview preview;
+    grab grab;
+    bool let_go, pause;
+    int hand;             // client whose gesture goes on, 0: none
+    bool cancel, closing; // atomic
+    board board;
+    int shown_hand; // whose serial the board contains
+    unsigned shown_serial;
+    char* linkage;
+    char* events[SLOT_COUNT];
+    unsigned event_numbers[SLOT_COUNT];
+
+    // the thread's own
+    session* session;
+    char *name, *path, *folder; // path: NULL while it has no name; folder: where steps find files
+    ax_form* live;              // what the hand pulls about, a copy of the session's form
+    double* live_scale;         // its prescribed factors before the gesture
+    char* live_op;              // the operator that is being previewed
+    bool live_fresh, live_shown, previewing, holding, moving, busy, rested, was_exact;
+    unsigned hand_serial;
+    int hand_of_serial;
+    int still; // updates in which nothing moved
+    shape_frame frame;
+    double (*last_places)[3], (*last_flat)[2]; // as published last
+    int last_count;
+    ax_form_report report;
+    double published, measured, reported, report_time, update_time, settle_time, move_start;
+    variant* variants;
+    int variant_count;
+    const char* job_name;
+    int job_id;
+    double job_start, progressed;
+};
+
+typedef struct job_type {
+    const char* name;
+    bool edits; // ends what the hand is at
+    ax_status (*run)(desk* d, const job* j, json_t** result, ax_error* error);
+} job_type;
+
+const job_type* job_find(const char* action);
+// Opens what the desk was made for.
+ax_status job_open(desk* d, ax_error* error);
+
+// For jobs: the desk's own doings.
+ax_progress desk_progress(desk* d);
+ax_form* desk_form(const desk* d); // what is shown; NULL: nothing yet
+void desk_end_live(desk* d);
+void desk_play(desk* d);
+void desk_step(desk* d, int iterations);
+void desk_restart(desk* d, double height);
+void desk_begin_edit(desk* d); // before every change of the document
+void desk_free_variants(desk* d);
+json_t* job_variants(const desk* d);
+
+// The commands of one file, ended by a row without a name.
+extern const job_type job_types_steps[], job_types_dynamics[], job_types_files[], job_types_variants[];
