@@ -69,12 +69,6 @@ static int add(ax_solver* s, const char* type, int each, int count, const int* h
     return group;
 }
 
-static void place_on_surface(const void* geometry, const double x[3], double out[3])
-{
-    ax_closest_point at = ax_closest_find(geometry, x, -1);
-    memcpy(out, at.point, 3 * sizeof *out);
-}
-
 // Rim parts and constraints on the deployed hinges, which start at point `first`; under load only what supports.
 static void add_holders(ax_form* f, ax_solver* s, int first, bool hang, ax_form_groups* groups)
 {
@@ -327,7 +321,7 @@ void ax_form_build(ax_form* f)
             holder->place = ax_curve_place(holder->curve);
         } else if (f->held[k].kind == AX_HELD_SURFACE) {
             holder->surface = ax_closest_make(f->held[k].surface);
-            holder->place = (ax_place){.nearest = place_on_surface, .geometry = holder->surface};
+            holder->place = ax_closest_place(holder->surface);
         }
     }
     build_shape(f);
