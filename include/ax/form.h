@@ -86,6 +86,7 @@ typedef struct ax_form_dynamics {
     ax_load load;    // kind, direction, density or pressure, for reports and the exact stage: the shape does not depend on its size
     bool adapt;      // panel sizes may give way a little so that holes open fully within rim and constraints
     double give;     // how easily they do: 0 not at all, default 3, at most 100
+    bool adopt;      // finishing takes the loaded state as the deployed one: what hangs is the design
     bool collisions; // the sheet may grow in the plane until no panels overlap
 } ax_form_dynamics;
 ax_form_dynamics ax_form_dynamics_default(void); // none, adapt, give 3, no collisions

@@ -184,9 +184,8 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
                          "are missed by %.1e edges. Let the form settle further, release the border, or ask less of it.",
                          joint.congruence, joint.steps, joint.off_place);
     if (status == AX_OK) {
-        moved a = distance(n, 2, f->flat[0], flat[0], unit), b = distance(n, 3, f->deployed[0], deployed[0], unit);
-        finish->flat_moved_rms = a.rms, finish->flat_moved_max = a.max;
-        finish->deployed_moved_rms = b.rms, finish->deployed_moved_max = b.max;
+        moved a = distance(n, 2, f->flat[0], flat[0], unit);
+        double(*before)[3] = ax_copy(f->deployed, (size_t)n, sizeof *before);
         memcpy(f->flat, flat, (size_t)n * sizeof *flat);
         memcpy(f->deployed, deployed, (size_t)n * sizeof *deployed);
         for (int t = 0; t < linkage->triangle_count; ++t)
@@ -214,12 +213,21 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
                 snprintf(finish->reason, sizeof finish->reason, "%.500s", trouble.message);
             else
                 memcpy(f->simulated, design->simulated, (size_t)n * sizeof *f->simulated);
+            if (simulated == AX_OK && f->dynamics.adopt) { // as congruent to the flat state as the deployed one was
+                memcpy(f->deployed, f->simulated, (size_t)n * sizeof *f->deployed);
+                memcpy(design->deployed, f->simulated, (size_t)n * sizeof *f->deployed);
+                ax_design_measure(design);
+            }
         } else {
             design->load.kind = AX_LOAD_NONE;
             ax_design_measure(design);
             if (ax_form_hangs(f))
                 snprintf(finish->reason, sizeof finish->reason, "Fewer than three hinges are held, so nothing can hang.");
         }
+        moved b = distance(n, 3, before[0], f->deployed[0], unit);
+        ax_free(before);
+        finish->flat_moved_rms = a.rms, finish->flat_moved_max = a.max;
+        finish->deployed_moved_rms = b.rms, finish->deployed_moved_max = b.max;
         finish->exact = status == AX_OK && !*finish->reason;
         f->exact = finish->exact;
         f->settled = true;

@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
-static const char magic[8] = "axform01";
+static const char magic[8] = "axform02";
 enum { MOST = 100000000 }; // entries of any one array
 
 typedef struct stream {

@@ -2,7 +2,7 @@
 
 typedef struct arguments {
     double direction[3], density;
-    bool adapt;
+    bool adapt, adopt;
     double give;
     int steps;
 } arguments;
@@ -24,6 +24,8 @@ static const ax_field fields[] = {
     AX_FLAG(arguments, adapt, "Sizes adapt",
             .doc = "Panel sizes may give way a little, so that holes open fully within rim and constraints."),
     AX_NUMBER(arguments, give, "Give", "", 0, 100, .doc = "How easily sizes give way."),
+    AX_FLAG(arguments, adopt, "Shape is the design",
+            .doc = "Finishing takes the loaded shape as the designed one, instead of the fully open one beside it."),
     AX_INTEGER(arguments, steps, "Steps", 0, 100000, .doc = "Iterations; 0: until the form is at rest."),
 };
 
@@ -45,6 +47,7 @@ static ax_status apply(const ax_operator_context* context, const void* given, ax
     for (int d = 0; d < 3; ++d)
         dynamics.load.direction[d] = a->direction[d] / length;
     dynamics.adapt = a->adapt;
+    dynamics.adopt = a->adopt;
     dynamics.give = a->give;
     ax_form_set_dynamics(*context->form, &dynamics);
     return AX_OK;
