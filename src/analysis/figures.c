@@ -123,6 +123,9 @@ double ax_figure_limit(const ax_figure* figure, const ax_design* design)
                      figure->offset == offsetof(ax_report, cover_p99_over_L);
     if (about_rim && design->border == AX_BORDER_INSIDE)
         return NAN; // whole triangles inside do not reach the boundary
+    bool about_target = about_rim || figure->offset == offsetof(ax_report, surface_max_over_L);
+    if (about_target && design->target.face_count == 0)
+        return NAN; // found without a target
     return figure->limit;
 }
 
