@@ -75,7 +75,7 @@ static const ax_figure* find(const char* key)
 static void limits_are_judged(void** state)
 {
     (void)state;
-    ax_design design = {.mouth_min = 2, .border = AX_BORDER_EQUILATERAL};
+    ax_design design = {.mouth_min = 2, .border = AX_BORDER_EQUILATERAL, .target.face_count = 1};
     design.report.congruence_max = 1e-12, design.report.mouth_min_deg = 1.9, design.report.force_residual = NAN;
     design.report.rim_max_over_L = 1;
     assert_true(ax_figure_holds(find("congruence_max"), &design));
@@ -84,6 +84,9 @@ static void limits_are_judged(void** state)
     assert_false(ax_figure_holds(find("stable"), &design));
     assert_true(ax_figure_holds(find("edge_mean"), &design)); // has no limit
     assert_false(ax_figure_holds(find("rim_max_over_L"), &design));
+    design.target.face_count = 0; // found without a target
+    assert_true(ax_figure_holds(find("rim_max_over_L"), &design));
+    design.target.face_count = 1;
     design.border = AX_BORDER_INSIDE; // whole triangles inside do not reach the boundary
     assert_true(ax_figure_holds(find("rim_max_over_L"), &design));
 }
