@@ -1,11 +1,12 @@
 // The projective solver against ShapeOp on the same problems: init, time per iteration, errors, memory, time to exactness.
 //
-//   bench_solver [--shapeop libShapeOp.so] [--json FILE] [--repeats R] [--iterations N] [PROBLEM ...]
+//   bench_solver [--shapeop libShapeOp.so] [--json FILE] [--repeats R] [--iterations N] [--patience SECONDS] [PROBLEM ...]
 //
 // A problem is dyn:N or static:N (6 N^2 triangles) or a file. Plain local/global iterations in double precision, in turn with
 // ShapeOp (the library of Bouaziz et al. and Deuss et al. 2015), loaded from a library built from its own sources with -O3
 // -march=native and OpenMP, and left out without it. Acceleration and multipliers have rows of their own. Every measurement is a
-// process of its own, so that memory is that of one job.
+// process of its own, so that memory is that of one job. Exactness is given up after --patience seconds (100), errors are followed
+// for --iterations (1000), fewer on large problems.
 #include "kagome.h"
 
 #include "base/clock.h"
@@ -229,7 +230,8 @@ typedef struct job {
     const kagome* k;
     const shapeop* api; // NULL: ours alone
     int threads, repeats, deepest;
-    int window; // of Anderson acceleration, 0: plain iterations
+    int window;      // of Anderson acceleration, 0: plain iterations
+    double patience; // seconds after which exactness is given up
 } job;
 
 // Iterations that one timing holds: about a tenth of a second, whole time steps.
@@ -333,7 +335,6 @@ static row run_plain(const job* j)
 // Edges and rim by multipliers, from the start of the problem, until all edges are right to 1e-10.
 static row run_exact(const job* j)
 {
-    const double patience = 100; // seconds
     const kagome* k = j->k;
     ax_pool* pool = ax_pool_make(j->threads);
     row r = {.threads = ax_pool_threads(pool), .exact_error = INFINITY};
@@ -341,7 +342,7 @@ static row run_exact(const job* j)
     ax_solver* solver = prepared(k, pool, true);
     ax_solver_accelerate(solver, j->window);
     double spent = ax_solver_count(solver).seconds_prepare;
-    while (r.exact_error > 1e-10 && spent < patience) {
+    while (r.exact_error > 1e-10 && spent < j->patience) {
         double start = ax_seconds();
         ax_solver_iterate(solver, CHUNK);
         spent += ax_seconds() - start;
@@ -410,13 +411,15 @@ typedef struct result {
     row one, all, exact, memory, fast, fast_exact; // fast: with Anderson acceleration
 } result;
 
-static result measure(const char* name, const kagome* k, const shapeop* api, int repeats, int iterations)
+static result measure(const char* name, const kagome* k, const shapeop* api, int repeats, int iterations,
+                      double patience)
 {
     int deepest = (int)fmin(iterations, WORK / k->triangles) / CHUNK * CHUNK;
     if (k->triangles > MOST_COMPARED || !k->regular)
         api = NULL;
-    job alone = {k, NULL, 1, repeats, CHUNK, 0}, side = {k, api, 0, repeats, deepest < CHUNK ? CHUNK : deepest, 0};
-    job fast = {k, NULL, 0, repeats, side.deepest, WINDOW};
+    job alone = {k, NULL, 1, repeats, CHUNK, 0, 0},
+        side = {k, api, 0, repeats, deepest < CHUNK ? CHUNK : deepest, 0, patience};
+    job fast = {k, NULL, 0, repeats, side.deepest, WINDOW, patience};
     result r = {.triangles = k->triangles, .dynamic = k->dynamic};
     const char* base = strrchr(name, '/');
     snprintf(r.name, sizeof r.name, "%s", base ? base + 1 : name);
@@ -446,6 +449,8 @@ static void print_errors(const char* kind, const row* a)
 
 static void print_exact(const char* kind, const row* a)
 {
+    if (a->exact_iterations == 0)
+        return;
     printf("  %s, with multipliers, edges and rim alone: ", kind);
     if (a->exact_milli > 0)
         printf("1e-3 in %.3f s, ", a->exact_milli);
@@ -527,6 +532,8 @@ static void write_row(FILE* file, const char* name, const row* r)
 
 static void write_exact(FILE* file, const char* name, const row* r)
 {
+    if (r->exact_iterations == 0)
+        return;
     fprintf(file, ",\n   \"%s\": {\"iterations\": %d, \"edge_error\": %.3g", name, r->exact_iterations, r->exact_error);
     if (r->exact_milli > 0)
         fprintf(file, ", \"to_1e-3_s\": %.6g", r->exact_milli);
@@ -568,6 +575,7 @@ int main(int argc, char** argv)
                                         "static:13", "static:41", "static:129", "static:408"};
     const char *library = NULL, *json = "/dev/null", *names[MOST_PROBLEMS];
     int repeats = 5, iterations = 1000, count = 0;
+    double patience = 100;
     for (int k = 1; k < argc; ++k) {
         const char* value = k + 1 < argc ? argv[k + 1] : NULL;
         if (argv[k][0] != '-' && count < MOST_PROBLEMS) {
@@ -582,10 +590,12 @@ int main(int argc, char** argv)
             repeats = atoi(value);
         else if (value && strcmp(argv[k], "--iterations") == 0 && atoi(value) > 0)
             iterations = atoi(value);
+        else if (value && strcmp(argv[k], "--patience") == 0)
+            patience = atof(value);
         else {
             fprintf(stderr,
                     "usage: bench_solver [--shapeop libShapeOp.so] [--json FILE] [--repeats R (1-%d)] "
-                    "[--iterations N] [dyn:N | static:N | FILE ...]\n",
+                    "[--iterations N] [--patience SECONDS] [dyn:N | static:N | FILE ...]\n",
                     MOST_REPEATS);
             return 2;
         }
@@ -609,7 +619,7 @@ int main(int argc, char** argv)
         kagome k;
         if (!open_problem(names[p], &k))
             return 3;
-        results[p] = measure(names[p], &k, compare ? &api : NULL, repeats, iterations);
+        results[p] = measure(names[p], &k, compare ? &api : NULL, repeats, iterations, patience);
         print_result(results + p);
         write_result(file, results + p, p == 0);
         kagome_free(&k);
