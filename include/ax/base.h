@@ -51,6 +51,8 @@ void* ax_alloc_aligned(size_t count, size_t size); // uninitialised, on a 64-byt
 void* ax_realloc(void* block, size_t count, size_t size);
 void* ax_copy(const void* block, size_t count, size_t size); // NULL stays NULL
 void ax_free(void* block);
+// Gives freed memory back to the system: after work that held much of it for a short time. Takes milliseconds.
+void ax_trim_memory(void);
 void ax_set_out_of_memory(void (*handler)(size_t bytes));
 // Number of allocations made so far by the library: tests use it to show that a steady state allocates nothing.
 size_t ax_allocation_count(void);

@@ -1,5 +1,6 @@
 #include "ax/base.h"
 
+#include <malloc.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -81,4 +82,11 @@ void* ax_copy(const void* block, size_t count, size_t size)
 void ax_free(void* block)
 {
     free(block);
+}
+
+void ax_trim_memory(void)
+{
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
 }

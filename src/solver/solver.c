@@ -7,6 +7,8 @@
 #include <assert.h>
 #include <string.h>
 
+enum { LEAST_TRIMMED = 200000 }; // points from which what an analysis held is worth giving back
+
 ax_solver* ax_solver_make(int points, const double (*places)[3], ax_pool* pool)
 {
     ax_solver* s = AX_NEW0(ax_solver, 1);
@@ -616,6 +618,8 @@ bool ax_solver_prepare(ax_solver* s)
     if (s->rows_changed) {
         sort_all(s);
         list_incidence(s);
+        if (s->n >= LEAST_TRIMMED)
+            ax_trim_memory();
         s->rows_changed = false;
     }
     s->counters.seconds_prepare += ax_seconds() - start;
