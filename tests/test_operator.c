@@ -8,9 +8,11 @@
 #include "operator/selection.h"
 #include "support/test.h"
 
+#include <cairo.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define HEAD   "{\"format\": \"auxshell-recipe\", \"version\": 1, \"operators\": ["
 #define CIRCLE "{\"op\": \"start_circle\", \"radius\": 1, \"triangles\": 200, \"scale\": 1.3}"
@@ -559,6 +561,34 @@ static void scale_factors_come_from_a_table(void** state)
     ax_form_free(form);
 }
 
+// Black on the left, white on the right, laid over the sheet.
+static void scale_factors_come_from_an_image(void** state)
+{
+    (void)state;
+    char path[] = "/tmp/test_operator_XXXXXX.png", text[200];
+    close(mkstemps(path, 4));
+    cairo_surface_t* image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 64, 8);
+    cairo_t* cairo = cairo_create(image);
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_rectangle(cairo, 32, 0, 32, 8);
+    cairo_fill(cairo);
+    cairo_destroy(cairo);
+    assert_int_equal(cairo_surface_write_to_png(image, path), CAIRO_STATUS_SUCCESS);
+    cairo_surface_destroy(image);
+    ax_form* form = play(CIRCLE);
+    snprintf(text, sizeof text, "{\"op\": \"image\", \"file\": \"%s\", \"black\": 1.2, \"white\": 1.7}", path);
+    apply(&form, text, false);
+    ax_form_view v = ax_form_look(form);
+    for (int t = 0; t < v.linkage->triangle_count; ++t) {
+        double x[2];
+        centre_of(&v, t, x);
+        if (fabs(x[0]) > 0.05) // a pixel from the middle
+            assert_near(v.prescribed[t], x[0] < 0 ? 1.2 : 1.7, 1e-9);
+    }
+    remove(path);
+    ax_form_free(form);
+}
+
 static void a_design_starts_from_a_drawn_curve(void** state)
 {
     (void)state;
@@ -757,10 +787,10 @@ static void selections_that_cannot_be_read_are_refused(void** state)
 {
     (void)state;
     static const char* const wrong[] = {
-        "",        "rim,",        "rims",     "#nobody",   "99999",          "3-1",        "1-99999",
-        "-5",      "rim/0",       "rim/9999", "rim/x",     "rim:",           "rim:0..",    "rim:side9",
-        "rim:0>99999", "ZZ99",        "line(1)",  "line(1,1)", "box(1,2)",       "box(1,2,3,", "disc(nan,0,1)",
-        "all &",   "all & , rim", "0 1",      "curve(0,)", "box(0x1,0,1,1)", "!",          "all!rim"};
+        "",          "rim,",           "rims",     "#nobody",    "99999",         "3-1",       "1-99999",     "-5",
+        "rim/0",     "rim/9999",       "rim/x",    "rim:",       "rim:0..",       "rim:side9", "rim:0>99999", "ZZ99",
+        "line(1)",   "line(1,1)",      "box(1,2)", "box(1,2,3,", "disc(nan,0,1)", "all &",     "all & , rim", "0 1",
+        "curve(0,)", "box(0x1,0,1,1)", "!",        "all!rim"};
     ax_form* form = play(CIRCLE);
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
         int *hinges = (int*)&k, count;
@@ -1037,6 +1067,7 @@ int main(void)
         cmocka_unit_test(distances_run_along_the_deployed_surface),
         cmocka_unit_test(curvature_beyond_the_limit_is_refused),
         cmocka_unit_test(scale_factors_come_from_a_table),
+        cmocka_unit_test(scale_factors_come_from_an_image),
         cmocka_unit_test(a_design_starts_from_a_drawn_curve),
         cmocka_unit_test(designs_start_from_outlines_and_surfaces),
         cmocka_unit_test(selections_choose_what_they_say),

@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+"""Recipes as users meet them: run, operators. AUXSHELL names the program."""
+import json
+import signal
+import subprocess
+import time
+import unittest
+
+import support.tap
+from support.command import AUXSHELL, ROOT, CommandCase
+
+SMALL = [
+    {"op": "start_circle", "radius": 1, "triangles": 150, "scale": 1.2},
+    {"op": "paint", "points": [[0, 0]], "radius": 0.9, "value": 1.7},
+    {"op": "rim_circle", "radius": 1.1},
+    {"op": "gravity"},
+]
+
+
+class Recipes(CommandCase):
+    def write(self, operators, name="recipe.json"):
+        path = self.folder / name
+        beside = self.folder / "beside"
+        beside.write_text(json.dumps({"format": "auxshell-recipe", "version": 1, "operators": operators}, indent=1))
+        beside.rename(path)
+        return path
+
+    def export(self, document):
+        self.succeed("export", document, "-o", self.folder / "x.json")
+        return (self.folder / "x.json").read_text()
+
+    def test_a_recipe_becomes_a_document(self):
+        out = self.folder / "x.auxshell"
+        words = self.succeed("run", self.write(SMALL), "-o", out)
+        self.assertIn("  1  Start from a circle: radius 1 m, triangles 150, scale 1.2", words)
+        self.assertIn("Settled after", words)
+        self.assertIn("boundary", words)
+        self.assertIn(f"Wrote {out}", words)
+        first = self.export(out)
+        self.succeed("run", self.write(SMALL), "-o", out)
+        self.assertEqual(self.export(out), first)
+        self.assertEqual(json.loads(first)["units"], "m")
+
+    def test_finished_it_is_exact(self):
+        out = self.folder / "x.auxshell"
+        words = self.succeed("run", self.write([*SMALL, {"op": "finish"}]), "-o", out)
+        self.assertIn("Exact after", words)
+        report = json.loads(self.succeed("info", out, "--json"))
+        text = json.dumps(report)
+        self.assertIn("congruence", text)
+        design = json.loads(self.export(out))
+        self.assertIsNotNone(design["simulated"])
+        self.assertLess(design["report"]["congruence_max"], 1e-9)
+
+    def test_until_stops_early(self):
+        words = self.succeed("run", self.write(SMALL), "-o", self.folder / "x.auxshell", "--until", 2)
+        self.assertIn("  2  Paint", words)
+        self.assertNotIn("Rim", words)
+
+    def test_files_are_looked_for_beside_the_recipe(self):
+        (self.folder / "scale.csv").write_text("x,y,lambda\n-1,0,1.2\n1,0,1.6\n0,1,1.4\n0,-1,1.4\n")
+        self.succeed("run", self.write([*SMALL, {"op": "table", "file": "scale.csv"}]), "-o", self.folder / "x.auxshell",
+                     cwd="/")
+
+    def test_what_is_wrong_is_named_and_nothing_is_written(self):
+        out = ("-o", self.folder / "x.auxshell")
+        for code, word, operators in (
+            (3, 'recipe.json, line 13, column 4: paint has no field "radus". Did you mean "radius"?',
+             [SMALL[0], {"op": "paint", "radus": 1}]),
+            (3, "no operators", []),
+            (3, "Operator 2, formula: ", [SMALL[0], {"op": "formula", "formula": "1 +"}]),
+            (3, "none.csv", [SMALL[0], {"op": "table", "file": "none.csv"}]),
+            (4, "Operator 2, paint_curvature: ",
+             [SMALL[0], {"op": "paint_curvature", "points": [[0, 0]], "radius": 1, "curvature": 20}]),
+            (2, "12 to 2000000", [{"op": "start_circle", "radius": 1, "edge": 1}]),
+        ):
+            with self.subTest(word=word):
+                self.refuse(code, word, "run", self.write(operators), *out)
+        self.refuse(3, "cannot be read", "run", self.folder / "none.json", *out)
+        (self.folder / "bad.json").write_text('{"format": "auxshell-recipe",}')
+        self.refuse(3, "bad.json, line 1, column", "run", self.folder / "bad.json", *out)
+
+    def test_watching_plays_from_the_first_change(self):
+        recipe = self.write(SMALL)
+        process = subprocess.Popen([AUXSHELL, "run", recipe, "-o", self.folder / "x.auxshell", "--watch"],
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(process.kill)
+        self.addCleanup(process.stdout.close)
+
+        def until_watching():
+            lines = []
+            for line in process.stdout:
+                lines.append(line)
+                if line.startswith("Watching"):
+                    return "".join(lines)
+            self.fail("".join(lines))
+
+        self.assertIn("  1  Start", until_watching())
+        self.write([*SMALL[:2], {"op": "rim_circle", "radius": 1.15}, SMALL[3]])
+        again = until_watching()
+        self.assertNotIn("  2  Paint", again)
+        self.assertIn("  3  Rim on a circle: radius 1.15 m", again)
+        self.assertIn("  4  Gravity", again)
+        self.write([*SMALL[:3], {"op": "nothing"}])
+        self.assertIn('no operator "nothing"', until_watching())
+        process.send_signal(signal.SIGINT)
+        for _ in range(100):
+            if process.poll() is not None:
+                break
+            time.sleep(0.1)
+        self.assertEqual(process.returncode, 0)
+
+    def test_operators_are_listed_and_explained(self):
+        listed = self.succeed("operators")
+        self.assertIn("\n  paint ", listed)
+        explained = self.succeed("operators", "paint")
+        self.assertIn("\n  falloff ", explained)
+        for text in (listed, explained):
+            self.assertLessEqual(max(map(len, text.splitlines())), 100)
+        self.refuse(2, 'Did you mean "paint"?', "operators", "pain")
+
+    def test_the_page_of_operators_is_up_to_date(self):
+        self.assertEqual((ROOT / "docs/operators.md").read_text(), self.succeed("operators", "--markdown"),
+                         "write it again: ./run operators --markdown > docs/operators.md")
+
+
+if __name__ == "__main__":
+    support.tap.main()
