@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 double (*ax_state_places(const ax_design* design, ax_state state))[3]
@@ -54,4 +55,23 @@ ax_status ax_export_close(FILE* out, const char* path, ax_error* error)
     bool sound = !ferror(out);
     sound = fclose(out) == 0 && sound;
     return sound ? AX_OK : fail_to_write(path, error);
+}
+
+void ax_put_mm(FILE* out, double mm)
+{
+    assert(fabs(mm) < 1e12);
+    long long units = llround(mm * 1e4), left = units < 0 ? -units : units;
+    char text[24], *at = text + sizeof text;
+    int decimals = 4;
+    while (decimals && left % 10 == 0)
+        left /= 10, --decimals;
+    for (bool first = true; first || left || decimals >= 0; first = false) {
+        if (decimals == 0 && !first)
+            *--at = '.';
+        *--at = (char)('0' + left % 10);
+        left /= 10, --decimals;
+    }
+    if (units < 0)
+        *--at = '-';
+    fwrite(at, 1, (size_t)(text + sizeof text - at), out);
 }

@@ -17,3 +17,7 @@ void ax_export_remark(const ax_design* design, ax_state state, char text[80]);
 FILE* ax_export_open(const char* path, ax_error* error); // NULL on failure
 // Closes; AX_FAILED if any write since opening has failed.
 ax_status ax_export_close(FILE* out, const char* path, ax_error* error);
+
+// Writes millimetres to a tenth of a micrometre, without trailing zeros and whatever the locale: cut files hold millions of numbers,
+// which printf would take most of the time for. |mm| < 1e12.
+void ax_put_mm(FILE* out, double mm);

@@ -5,23 +5,12 @@
 #include <jansson.h>
 #include <math.h>
 
-// A tenth of a micrometre, without trailing zeros: a file of a million panels is a third shorter.
-static void put_mm(FILE* out, double mm)
-{
-    char text[330]; // room for any double
-    int length = snprintf(text, sizeof text, "%.4f", mm);
-    while (text[length - 1] == '0')
-        --length;
-    length -= text[length - 1] == '.';
-    fwrite(text, 1, (size_t)length, out);
-}
-
 static void put_point(FILE* out, char command, double x, double y)
 {
     putc(command, out);
-    put_mm(out, x);
+    ax_put_mm(out, x);
     putc(' ', out);
-    put_mm(out, y);
+    ax_put_mm(out, y);
 }
 
 // y of the plan points up, y of the sheet down.
@@ -34,9 +23,9 @@ static void put_way(FILE* out, const ax_cut_point* from, const ax_cut_point* to,
     ax_cut_arc arc = ax_cut_arc_of(from, to);
     put_point(out, 'A', arc.radius, arc.radius);
     fprintf(out, " 0 0 %d ", arc.sweep < 0); // no arc is more than a half circle
-    put_mm(out, to->x);
+    ax_put_mm(out, to->x);
     putc(' ', out);
-    put_mm(out, height - to->y);
+    ax_put_mm(out, height - to->y);
 }
 
 static void put_path(FILE* out, const ax_cut_plan* plan, const ax_cut_path* path, double height)
@@ -107,13 +96,13 @@ static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, i
           "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" "
           "width=\"",
           out);
-    put_mm(out, sheet->width);
+    ax_put_mm(out, sheet->width);
     fputs("mm\" height=\"", out);
-    put_mm(out, sheet->height);
+    ax_put_mm(out, sheet->height);
     fputs("mm\" viewBox=\"0 0 ", out);
-    put_mm(out, sheet->width);
+    ax_put_mm(out, sheet->width);
     putc(' ', out);
-    put_mm(out, sheet->height);
+    ax_put_mm(out, sheet->height);
     fputs("\">\n<title>", out);
     put_escaped(out, *plan->title ? plan->title : "Auxshell cut sheet");
     fprintf(out, "</title>\n<desc>Auxshell %s, flat state, lengths in mm, kerf %g, ", ax_version(), plan->kerf);

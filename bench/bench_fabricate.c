@@ -1,0 +1,146 @@
+// From a design to cut files: sheets with labels by every joint, written to every cut format.
+//
+//   bench_fabricate [--json FILE] SURFACE [TRIANGLES ...]        default 2500 5000 10000 20000
+//
+// Panels have edges of 100 mm on average and go to sheets of 1220 x 2440 mm. Seconds of one run; clearance is timed apart. Memory is
+// the largest the process has had so far, sizes ascending.
+#include "ax/export.h"
+#include "base/clock.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+enum { MOST_SIZES = 16 };
+static const double edge = 0.1; // m
+
+static void require(ax_status status, const ax_error* error)
+{
+    if (status == AX_OK)
+        return;
+    fprintf(stderr, "%s\n", error->message);
+    exit((int)status);
+}
+
+static ax_design make_design(const ax_mesh* surface, int triangles)
+{
+    ax_design_options options = ax_design_options_default();
+    ax_mesh target = ax_mesh_copy(surface);
+    ax_design design;
+    ax_error error;
+    options.triangles = triangles;
+    options.project = true;
+    options.load.kind = AX_LOAD_NONE;
+    for (int pass = 0; pass < 2; ++pass) {
+        require(ax_design_from_target(&target, &options, NULL, &design, &error), &error);
+        if (pass)
+            break;
+        for (int v = 0; v < target.vertex_count; ++v)
+            for (int d = 0; d < 3; ++d)
+                target.positions[v][d] *= edge / design.report.edge_mean;
+        ax_design_free(&design);
+    }
+    ax_mesh_free(&target);
+    return design;
+}
+
+static double peak_megabytes(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)usage.ru_maxrss / 1024;
+}
+
+// Writes a plan's sheets under `folder` in every cut format and removes them; returns the seconds of writing.
+static double write_all(const ax_cut_plan* plan, const char* folder)
+{
+    int count;
+    const ax_export_type* const* types = ax_export_types(&count);
+    double seconds = 0;
+    for (int k = 0; k < count; ++k) {
+        if (!types[k]->write_sheet)
+            continue;
+        char path[256];
+        ax_error error;
+        snprintf(path, sizeof path, "%s/sheet%s", folder, types[k]->ending);
+        double start = ax_seconds();
+        require(ax_export_plan(plan, path, &error), &error);
+        seconds += ax_seconds() - start;
+        unlink(path);
+        for (int s = 1; s <= plan->sheet_count; ++s) {
+            snprintf(path, sizeof path, "%s/sheet-%d%s", folder, s, types[k]->ending);
+            unlink(path);
+        }
+    }
+    return seconds;
+}
+
+int main(int argc, char** argv)
+{
+    const char* json = "/dev/null";
+    if (argc > 2 && strcmp(argv[1], "--json") == 0)
+        json = argv[2], argc -= 2, argv += 2;
+    if (argc < 2) {
+        fprintf(stderr, "usage: bench_fabricate [--json FILE] SURFACE [TRIANGLES ...]\n");
+        return 2;
+    }
+    char folder[] = "/tmp/bench_fabricate_XXXXXX";
+    FILE* file = fopen(json, "w");
+    if (!file || !mkdtemp(folder)) {
+        perror(json);
+        return 1;
+    }
+    int sizes[MOST_SIZES] = {2500, 5000, 10000, 20000}, count = 4, joints;
+    for (int k = 2; k < argc && k - 2 < MOST_SIZES; ++k)
+        sizes[k - 2] = atoi(argv[k]), count = k - 1;
+    ax_mesh surface;
+    ax_error error;
+    require(ax_mesh_read(argv[1], NULL, &surface, NULL, &error), &error);
+    const ax_joint_type* const* types = ax_joint_types(&joints);
+    fprintf(file, "[");
+    const char* separator = "";
+    printf("joint           panels  sheets  labels beside/none   plan  clearance   write     MB\n");
+    for (int s = 0; s < count; ++s) {
+        ax_design design = make_design(&surface, sizes[s]);
+        for (int j = 0; j < joints; ++j) {
+            ax_fabricate_options options = ax_fabricate_options_default();
+            double seconds[2];
+            ax_cut_plan plan;
+            options.joint = types[j];
+            options.sheet[0] = 1220, options.sheet[1] = 2440, options.kerf = 0.2;
+            for (int clearance = 1; clearance >= 0; --clearance) {
+                options.clearance = clearance;
+                double start = ax_seconds();
+                require(ax_fabricate(&design, &options, NULL, &plan, &error), &error);
+                seconds[clearance] = ax_seconds() - start;
+                if (clearance)
+                    ax_cut_plan_free(&plan);
+            }
+            double writing = write_all(&plan, folder), megabytes = peak_megabytes();
+            printf("%-14s %7d %7d %12d/%-6d %7.3f %10.3f %7.3f %6.0f\n", types[j]->name, plan.panel_count,
+                   plan.sheet_count, plan.labels_outside, plan.labels_dropped, seconds[0], seconds[1] - seconds[0],
+                   writing, megabytes);
+            fprintf(
+                file,
+                "%s\n  {\"joint\": \"%s\", \"panels\": %d, \"sheets\": %d, \"plan_s\": %.6g, \"clearance_s\": %.6g, "
+                "\"write_s\": %.6g, \"peak_mb\": %.6g}",
+                separator, types[j]->name, plan.panel_count, plan.sheet_count, seconds[0], seconds[1] - seconds[0],
+                writing, megabytes);
+            separator = ",";
+            fflush(stdout);
+            ax_cut_plan_free(&plan);
+        }
+        ax_design_free(&design);
+    }
+    ax_mesh_free(&surface);
+    rmdir(folder);
+    fprintf(file, "\n]\n");
+    if (fclose(file)) {
+        perror(json);
+        return 1;
+    }
+    return 0;
+}
