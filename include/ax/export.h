@@ -35,9 +35,9 @@ typedef struct ax_export_type {
 const ax_export_type* const* ax_export_types(int* count);
 
 // Writes beside `path` and renames, so that no partial file is ever left. Cut files of several sheets become NAME-1.svg,
-// NAME-2.svg and so on beside an overview in NAME.svg, unless the format holds them all in one file. NULL options: default state, no title. AX_USAGE on an
-// unknown ending (the message lists the known ones) or a state the format does not carry; AX_BAD_INPUT when the state is missing
-// (not simulated); AX_FAILED when the disk does not take it.
+// NAME-2.svg and so on beside an overview in NAME.svg, unless the format holds them all in one file. NULL options: default
+// state, no title. AX_USAGE on an unknown ending (the message lists the known ones) or a state the format does not carry;
+// AX_BAD_INPUT when the state is missing (not simulated); AX_FAILED when the disk does not take it.
 ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error);
 
 // The same for a plan without a design, as ax_fabricate_coupon makes it. AX_USAGE unless the ending is that of a cut file.

@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const double height = 3, advance = 5; // mm, letters and lines
-static const double tick = 2;                // mm, either side of the bar
+static const double tick = 2, gap = 2;       // mm, either side of the bar, and below it
 static const char bar_text[] = "100 mm";
 
 double ax_notes_width(void)
@@ -96,7 +96,7 @@ double ax_notes_strip(const ax_work* w, double width)
 {
     char line[24][160];
     // as many digits as the sheet's number may come to have
-    return 2 * tick + compose(w, width, w->plan->panel_count, line) * advance;
+    return 2 * tick + gap + compose(w, width, w->plan->panel_count, line) * advance;
 }
 
 void ax_put_notes(ax_work* w, int sheet)
@@ -118,5 +118,5 @@ void ax_put_notes(ax_work* w, int sheet)
     ax_plan_text(b, bar_text, height, &(ax_motion){1, 0, right + height, top - height / 2});
     for (int k = 0; k < count; ++k)
         ax_plan_text(b, line[k], height,
-                     &(ax_motion){1, 0, left, top - tick - (k + 1) * advance + (advance - height) / 2});
+                     &(ax_motion){1, 0, left, top - tick - gap - (k + 1) * advance + (advance - height)});
 }
