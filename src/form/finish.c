@@ -80,9 +80,12 @@ static ax_joint_plane* list_planes(const ax_form* f, int* count)
     return planes;
 }
 
-// Arches that stay supports under the load are held in the plane they lie in.
-static void hold_arches(const ax_form* f, const double (*x)[3], ax_hold* holds)
+// Arches that stay supports under the load are held in the plane they lie in; where two cross, on the line of both. Returns those
+// lines, NULL at the end, owned by the caller.
+static ax_curve** hold_arches(const ax_form* f, const double (*x)[3], ax_hold* holds)
 {
+    ax_curve** lines = AX_NEW0(ax_curve*, f->lattice.linkage.hinge_count + 1);
+    int crossings = 0;
     for (int k = 0; k < f->held_count; ++k) {
         const ax_form_constraint* c = f->held + k;
         if (!c->support || (c->kind != AX_HELD_PLANE && c->kind != AX_HELD_PLANE_GIVEN))
@@ -109,13 +112,21 @@ static void hold_arches(const ax_form* f, const double (*x)[3], ax_hold* holds)
         double length = ax_norm3(normal);
         for (int i = 0; i < c->count && length > 0; ++i) {
             ax_hold* hold = holds + c->hinges[i];
-            if (hold->kind != AX_HOLD_FREE)
-                continue;
-            hold->kind = AX_HOLD_IN_PLANE;
-            for (int d = 0; d < 3; ++d)
-                hold->normal[d] = normal[d] / length;
+            double unit[3] = {normal[0] / length, normal[1] / length, normal[2] / length}, along[3];
+            if (hold->kind == AX_HOLD_FREE) {
+                hold->kind = AX_HOLD_IN_PLANE;
+                memcpy(hold->normal, unit, sizeof unit);
+            } else if (hold->kind == AX_HOLD_IN_PLANE) {
+                ax_cross(hold->normal, unit, along);
+                if (ax_norm3(along) < 1e-6)
+                    continue; // the same plane twice
+                lines[crossings] = ax_curve_line(x[c->hinges[i]], along);
+                *hold = (ax_hold){.kind = AX_HOLD_ON_CURVE, .curve = lines[crossings++]};
+            } else if (hold->kind == AX_HOLD_ON_CURVE)
+                hold->kind = AX_HOLD_FIXED; // a curve meets a plane in a point
         }
     }
+    return lines;
 }
 
 static void make_design(const ax_form* f, ax_design* design)
@@ -204,9 +215,12 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
         bool loaded = ax_form_hangs(f) && held >= 3;
         if (loaded) {
             ax_error trouble = {0};
-            hold_arches(f, (const double(*)[3])deployed, holds);
+            ax_curve** lines = hold_arches(f, (const double(*)[3])deployed, holds);
             ax_status simulated = ax_design_simulate_held(design, &f->dynamics.load, holds,
                                                           ax_progress_within(&second, progress, 0.4, 1), &trouble);
+            for (int k = 0; lines[k]; ++k)
+                ax_curve_free(lines[k]);
+            ax_free(lines);
             if (simulated == AX_CANCELLED)
                 status = ax_fail(error, AX_CANCELLED, "Cancelled.");
             else if (simulated != AX_OK)
