@@ -45,8 +45,10 @@ static void unit_words(const ax_field* field, char words[32])
 
 static void range_words(const ax_field* field, char words[64])
 {
-    if (field->hi >= 1e9)
-        snprintf(words, 64, field->lo <= -1e9 ? "" : field->open ? ", more than %.10g" : ", at least %.10g", field->lo);
+    if (field->hi >= 1e9 && field->lo <= -1e9)
+        *words = 0;
+    else if (field->hi >= 1e9)
+        snprintf(words, 64, ", %s %.10g", field->open ? "more than" : "at least", field->lo);
     else
         snprintf(words, 64, ", %s%.10g to %.10g", field->open ? "more than " : "", field->lo, field->hi);
 }
