@@ -3,15 +3,14 @@
 import json
 import math
 import os
-import shutil
-import signal
+import socket
 import struct
 import time
 import unittest
 
 import judge_design
 import support.tap
-from support.command import SURFACES, CommandCase, run
+from support.command import QUICK, SURFACES, CommandCase
 from support.studio import EXACT, MOVING, SETTLED, Closed, Page, Socket, Studio
 
 DOME = [{"op": "start_circle", "radius": 2, "triangles": 300, "scale": 1.3},
@@ -31,8 +30,14 @@ class StudioCase(CommandCase):
             (self.folder / "dome.json").write_text(recipe(steps))
             options["document"] = self.folder / "dome.json"
         studio = Studio(self.folder, *words, **options)
-        self.addCleanup(studio.stop, signal.SIGKILL)
+        self.addCleanup(self.end, studio)
         return studio
+
+    def end(self, studio):
+        """Whatever was done to it, it ends cleanly: sanitizers speak here too."""
+        if studio.process.poll() is None:
+            code, said = studio.stop()
+            self.assertEqual(code, 0, said)
 
     def page(self, studio, joined=True, **options):
         page = Page(studio, **options)
@@ -385,7 +390,8 @@ class Survival(StudioCase):
             for _ in range(1000):
                 page.receive()
         if isinstance(caught.exception, Closed) and code:
-            self.assertEqual(caught.exception.code, code)
+            # the word may be lost where the server hangs up on what we are still sending
+            self.assertIn(caught.exception.code, (code, None) if code == 1009 else (code,))
 
     def test_messages_that_are_none_are_answered_and_forgotten(self):
         studio = self.start()
@@ -460,9 +466,8 @@ class Survival(StudioCase):
             gone.tell("play")
             gone.tell("grab", hinge=3, to=[0, 0, 3], serial=1)
             gone.close()
-        request = Socket.__new__(Socket)
         for start in ("GET / HTTP/1.1\r\nHost", "\x16\x03\x01 no tls here", "POST /x HTTP/1.1\r\nContent-Length: -5\r\n\r\n"):
-            request = __import__("socket").create_connection(("127.0.0.1", studio.port))
+            request = socket.create_connection(("127.0.0.1", studio.port))
             request.sendall(start.encode())
             request.close()
         self.alive(studio)
@@ -532,7 +537,7 @@ class Life(StudioCase):
         page = self.page(studio)
         studio.upload("a.obj", b"x")
         page.tell("play")
-        self.assertEqual(studio.stop(), 0)
+        self.assertEqual(studio.stop(), (0, ""))
         with self.assertRaises((Closed, ConnectionError)):
             while True:
                 page.read()
@@ -548,6 +553,7 @@ class Life(StudioCase):
         (self.folder / "other.json").write_text(recipe(DOME[:1]))
         self.refuse(1, "port", "studio", self.folder / "other.json", "--no-browser", "--port", studio.port)
 
+    @unittest.skipIf(QUICK, "sanitizers are slow")
     def test_the_latency_of_the_hand(self):
         page = self.page(self.start(steps=[dict(DOME[0], triangles=2000), *DOME[1:]]))
         took = []

@@ -193,11 +193,7 @@ class Studio:
         return json.loads(body)["upload"]
 
     def stop(self, how=signal.SIGINT):
-        """Its exit code."""
-        if self.process.poll() is None:
-            self.process.send_signal(how)
-        try:
-            return self.process.wait(60)
-        finally:
-            self.process.stdout.close()
-            self.process.stderr.close()
+        """Its exit code, and what it said on stderr."""
+        self.process.send_signal(how)
+        _, said = self.process.communicate(timeout=60)
+        return self.process.returncode, said
