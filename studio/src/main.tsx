@@ -4,7 +4,10 @@ import "./styles/base.css";
 import "./styles/controls.css";
 import "./styles/layout.css";
 import { socketTo } from "./protocol/link";
-import { connect, latency } from "./state/session";
+import { motion } from "./state/motion";
+import * as selection from "./state/selection";
+import * as session from "./state/session";
+import { connect, currentShell, latency } from "./state/session";
 import { stage } from "./state/view";
 import { App } from "./ui/app";
 import { listenToKeys } from "./ui/keyboard";
@@ -19,6 +22,6 @@ async function begin(): Promise<void> {
     } else connect(socketTo(location));
 }
 
-/** For tests: latencies from hand to screen, milliseconds, and what drawing itself took. */
-Object.assign(window, { auxshell: { latency, drawTime: () => stage.value?.drawTime ?? 0 } });
+/** For measuring from outside: latencies from hand to screen in milliseconds, what drawing took, and what is shown. */
+Object.assign(window, { auxshell: { latency, stage, session, selection, motion, shell: currentShell, drawTime: () => stage.value?.drawTime ?? 0 } });
 void begin();

@@ -18,7 +18,7 @@ describe("framing", () => {
             x = Math.max(x, Math.abs(p.x));
             y = Math.max(y, Math.abs(p.y));
         }
-        expect(Math.max(x / 0.88, y / 0.8)).toBeCloseTo(1, 2);
+        expect(Math.max(x / 0.88, y / 0.72)).toBeCloseTo(1, 2);
     });
     it("keeps the size of what is at the target between perspective and parallel", () => {
         const orbit = new OrbitCamera();

@@ -135,7 +135,7 @@ export class OrbitCamera {
             }
             x += (left + rightmost) / 2;
             y += (low + high) / 2;
-            distance = Math.max((rightmost - left) / 2 / (tan * aspect * share), (high - low) / 2 / (tan * Math.min(0.8, share)), 1e-6);
+            distance = Math.max((rightmost - left) / 2 / (tan * aspect * share), (high - low) / 2 / (tan * Math.min(0.72, share)), 1e-6);
         }
         y -= rise * 2 * distance * tan;
         return { ...pose, distance, target: [0, 1, 2].map((k) => right[k] * x + up[k] * y + back[k] * z) as Pose["target"] };

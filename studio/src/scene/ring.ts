@@ -31,10 +31,7 @@ export function drawRing(context: CanvasRenderingContext2D, stage: Stage, view: 
     const place = new THREE.Vector3();
     const normal = new THREE.Vector3();
     const eye = view.orbit.camera.position;
-    // panels turn against each other, which carries the circle over in steps as long as a panel: three passes even them out
-    let carried = ring.at.map((p) => skin.carry(p, new THREE.Vector3()));
-    for (let pass = 0; pass < 3; pass++)
-        carried = carried.map((p, k) => p.clone().multiplyScalar(2).add(carried.at(k - 1)!).add(carried[(k + 1) % carried.length]).divideScalar(4));
+    const carried = lowPass(ring.at.map((p) => skin.carry(p, new THREE.Vector3())));
     const projected = ring.at.map((p, k) => {
         const s = stage.project(view, carried[k]);
         const away = view.state === "space" && skin.normal(p.face, normal).dot(eye.clone().sub(carried[k])) < 0;
@@ -97,4 +94,25 @@ export function drawRing(context: CanvasRenderingContext2D, stage: Stage, view: 
         context.stroke();
     }
     context.restore();
+}
+
+/** Panels turn against each other, which carries a circle over in steps as long as a panel: only its slow waves are kept. */
+function lowPass(loop: THREE.Vector3[]): THREE.Vector3[] {
+    const n = loop.length;
+    const out = loop.map(() => new THREE.Vector3());
+    for (let wave = 0; wave <= 4; wave++) {
+        const cosine = new THREE.Vector3();
+        const sine = new THREE.Vector3();
+        loop.forEach((p, k) => {
+            const a = (2 * Math.PI * wave * k) / n;
+            cosine.addScaledVector(p, ((wave ? 2 : 1) / n) * Math.cos(a));
+            sine.addScaledVector(p, (2 / n) * Math.sin(a));
+        });
+        out.forEach((p, k) => {
+            const a = (2 * Math.PI * wave * k) / n;
+            p.addScaledVector(cosine, Math.cos(a));
+            if (wave) p.addScaledVector(sine, Math.sin(a));
+        });
+    }
+    return out;
 }

@@ -61,6 +61,7 @@ export class Stage {
     private look: Look = light;
     private request = 0;
     private restTimer: ReturnType<typeof setTimeout> | undefined;
+    // without a graphics card both kinds of shadow wait until the shell rests
     private dirtyShadows = false;
     private dirtyGround = false;
     private width = 0;
@@ -232,7 +233,7 @@ export class Stage {
         let moving = false;
         if (scenes) {
             const shownStates = new Set(this.shown.map((id) => this.views[id].state));
-            if (this.dirtyShadows) {
+            if (this.dirtyShadows && !(this.frugal && this.dirtyGround)) {
                 for (const state of shownStates) scenes[state].castShadows();
                 this.dirtyShadows = false;
             }
@@ -269,6 +270,7 @@ export class Stage {
         this.restTimer = setTimeout(() => {
             if (!this.scenes) return;
             for (const scene of Object.values(this.scenes)) scene.drawGround(this.renderer);
+            this.dirtyShadows ||= this.frugal;
             this.invalidate();
         }, 80);
     }

@@ -131,7 +131,7 @@ export const commands: Command[] = [
     { id: "motion-end", title: "At rest", keys: ["End"], group: "Deployment", run: () => void scrub(1), when: open },
     { id: "play", title: "Run or pause the solver", keys: ["R"], group: "Deployment", run: togglePlay, when: editable },
     { id: "step", title: "One step of the solver", keys: ["Shift+R"], group: "Deployment", run: () => void command("step", { iterations: 1 }), when: editable },
-    { id: "settle", title: "Settle", keys: ["Ctrl+R"], group: "Deployment", run: () => void command("settle"), when: editable },
+    { id: "settle", title: "Settle", keys: ["Shift+Space"], group: "Deployment", run: () => void command("settle"), when: editable },
     ...tools.map((t): Command => ({
         id: `tool-${t.id}`, title: t.title, keys: [t.shortcut], group: "Tools",
         run: () => {

@@ -18,11 +18,11 @@ let dragging: { plane: THREE.Plane; from: THREE.Vector3 } | null = null;
 let snapped: THREE.Vector3 | null = null;
 
 export const boundaryOperators = (): OperatorSchema[] => operators.value.filter((o) => o.group === "boundary");
-export const rimSchema = () => operatorNamed(rimOp.value) ?? boundaryOperators().find((o) => pointsField(o)) ?? boundaryOperators()[0];
+export const rimSchema = () => operatorNamed(rimOp.value) ?? boundaryOperators().find((o) => o.name === "rim_circle") ?? boundaryOperators()[0];
 
-/** The field that holds points in space, if the operator has one. */
+/** The field that holds the curve's points in space, if the operator has one. */
 export function pointsField(schema: OperatorSchema | undefined) {
-    return schema?.fields.find((f) => f.kind === "points" && f.width === 3);
+    return schema?.fields.find((f) => f.kind === "points" && f.width === 3 && f.required);
 }
 
 export function rimPoints(): [number, number, number][] {

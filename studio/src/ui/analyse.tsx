@@ -68,7 +68,7 @@ export function AnalysePanel() {
             {strongest.length > 0 && (
                 <Section title="Largest forces" aside="Axial">
                     <table class="figures lined">
-                        <thead><tr><th scope="col">Panel</th><th scope="col"></th><th scope="col">Force</th></tr></thead>
+                        <thead><tr><th scope="col">Panel</th><th scope="col">Sense</th><th scope="col">Force</th></tr></thead>
                         <tbody>
                             {strongest.map(({ f, t }) => (
                                 <tr key={t} aria-selected={selected.value.has(t)}>

@@ -1,10 +1,11 @@
 // "Can it deploy?", always in sight: a verdict and what it hangs on. A check leads to its place.
 import { show } from "../state/selection";
-import { report, status } from "../state/session";
+import { documentState, report, status } from "../state/session";
 import { mode } from "../state/view";
 import type { Check } from "../protocol/types";
 import { severityClass, severityIcon } from "./controls";
-import { plural } from "./format";
+import { checkWords } from "./checkwords";
+import { type LengthUnit, plural } from "./format";
 import { Icon } from "./icons";
 
 /** Five of the seven have room; forces and match matter once there is a load, curvature and overlaps before. */
@@ -35,13 +36,16 @@ export function Checks() {
                 <span class={`answer ${severityClass[r.verdict.severity]}`}><Icon name={severityIcon[r.verdict.severity]} size={20} /><span>{r.verdict.word}</span></span>
                 <span class="l">{words}</span>
             </div>
-            {shownChecks(r.checks).map((c) => (
-                <button key={c.key} type="button" title={`${c.title}: ${c.answer}. ${c.limit}`} onClick={() => show(c.triangle, c.hinge)}>
-                    <span class="q">{c.title}</span>
-                    <span class="answer"><Icon name={severityIcon[c.severity]} size={16} class={`icon ${severityClass[c.severity]}`} /><span>{c.answer}</span></span>
-                    <span class="l">{c.limit}</span>
-                </button>
-            ))}
+            {shownChecks(r.checks).map((c) => {
+                const w = checkWords(c, (documentState.value?.unit ?? "m") as LengthUnit);
+                return (
+                    <button key={c.key} type="button" title={`${c.title}: ${c.answer}. ${c.limit}`} onClick={() => show(c.triangle, c.hinge)}>
+                        <span class="q">{w.question}</span>
+                        <span class="answer"><Icon name={severityIcon[c.severity]} size={16} class={`icon ${severityClass[c.severity]}`} /><span>{w.answer}</span></span>
+                        <span class="l">{w.limit}</span>
+                    </button>
+                );
+            })}
         </section>
     );
 }

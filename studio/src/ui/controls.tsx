@@ -212,7 +212,7 @@ export function Section({ title, aside, children, id }: { title: string; aside?:
     return (
         <section class="section" aria-label={title} id={id}>
             <header>
-                <h3>{title}</h3>
+                <h2>{title}</h2>
                 {aside !== undefined && <span class="aside">{aside}</span>}
             </header>
             {children}
@@ -246,12 +246,12 @@ export function Dialog({ title, size = "", onClose, children, footer }: {
     return (
         <div class="veil" onPointerDown={(e) => e.target === e.currentTarget && onClose()}>
             <div ref={box} class={`dialog ${size}`} role="dialog" aria-modal="true" aria-labelledby={heading} tabIndex={-1} onKeyDown={keys}>
-                <header>
+                <div class="dialog-head">
                     <h2 id={heading}>{title}</h2>
                     <Tool icon="close" name="Close" onClick={onClose} />
-                </header>
+                </div>
                 {children}
-                {footer && <footer>{footer}</footer>}
+                {footer && <div class="dialog-foot">{footer}</div>}
             </div>
         </div>
     );

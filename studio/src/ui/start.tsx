@@ -4,6 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import type { FolderEntry } from "../protocol/types";
 import { ask, command, documentState, hello, operatorNamed, problem } from "../state/session";
 import { dialog, page } from "../state/view";
+import { colourOf, tide } from "../panels/colour";
 import { callOf, argumentsOf, resetArguments, setArgument } from "../tools/calls";
 import { ThemeButton } from "./bar";
 import { Button, Dialog, Tool } from "./controls";
@@ -117,22 +118,30 @@ function OutlineDialog({ op, onClose, onStart }: { op: string; onClose(): void; 
     );
 }
 
-/** A disc of kagome: the two colours of triangles that turn against each other. */
+/** A disc of the flat linkage: triangles of two senses, turned against each other about the lattice they came from. */
 function Kagome() {
-    const triangles: string[] = [];
-    const a = 9.6;
-    const h = (a * Math.sqrt(3)) / 2;
-    for (let j = -5; j <= 5; j++)
-        for (let i = -6; i <= 6; i++) {
-            const x = 43 + (i + j / 2) * a * 1;
-            const y = 43 + j * h;
-            if (Math.hypot(x - 43, y - 43) > 37 || (i & 1) !== 0 && (j & 1) !== 0) continue;
-            triangles.push(`M${(x - 2.9).toFixed(1)} ${(y + 1.8).toFixed(1)}h5.8l-2.9-5z`);
+    const side = 5.6;
+    const panels: { path: string; colour: string }[] = [];
+    const place = (i: number, j: number) => [43 + side * (i + j / 2), 43 + side * j * 0.866] as const;
+    const add = (corners: [number, number][], sense: number) => {
+        const p = corners.map(([i, j]) => place(i, j));
+        const [x, y] = [0, 1].map((k) => p.reduce((s, q) => s + q[k], 0) / 3);
+        const away = Math.hypot(x - 43, y - 43);
+        if (away > 37) return;
+        const [c, s] = [0.86 * Math.cos(0.5), 0.86 * Math.sin(0.5) * sense];
+        const turned = p.map(([u, v]) => `${(x + c * (u - x) - s * (v - y)).toFixed(1)} ${(y + s * (u - x) + c * (v - y)).toFixed(1)}`);
+        const [r, g, b] = colourOf({ map: tide, lo: 0, hi: 1 }, 0.7 * Math.exp(-((away / 28) ** 2)) + 0.15);
+        panels.push({ path: `M${turned.join("L")}z`, colour: `rgb(${r} ${g} ${b})` });
+    };
+    for (let j = -10; j <= 10; j += 2)
+        for (let i = -14; i <= 14; i += 2) {
+            add([[i, j], [i + 1, j], [i, j + 1]], 1);
+            add([[i, j - 1], [i, j], [i - 1, j]], -1);
         }
     return (
         <svg width="86" height="86" viewBox="0 0 86 86" aria-hidden="true">
             <circle cx="43" cy="43" r="42" fill="none" stroke="currentColor" stroke-dasharray="3 3" />
-            <path d={triangles.join("")} fill="#24899e" />
+            {panels.map((p) => <path key={p.path} d={p.path} fill={p.colour} />)}
         </svg>
     );
 }

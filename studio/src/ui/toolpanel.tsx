@@ -223,7 +223,7 @@ function RimPanel() {
             {schema.fields.some((f) => f.name === "radius") && schema.fields.some((f) => f.name === "centre") && (
                 <div class="row" style={{ marginTop: "4px" }}><Button small onClick={() => fitCircle(schema.name)}>Fit to the rim</Button></div>
             )}
-            {field && schema.name.startsWith("rim_") && (
+            {field && (
                 <>
                     <div class="form">
                         <Row label="Points">{() => (

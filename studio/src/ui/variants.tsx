@@ -1,10 +1,11 @@
 // Variants: copies of the recipe under a name, small in the inspector, side by side in their own mode.
 import { useSignal } from "@preact/signals";
-import { command, variants } from "../state/session";
+import { command, documentState, variants } from "../state/session";
 import { looks } from "../state/variants";
 import { mode } from "../state/view";
 import { Button, Section, severityClass, severityIcon } from "./controls";
-import { count } from "./format";
+import { checkWords } from "./checkwords";
+import { type LengthUnit, count } from "./format";
 import { Icon } from "./icons";
 
 function nextName(): string {
@@ -43,6 +44,7 @@ export function Variants() {
 export function VariantsPage() {
     const all = variants.value;
     const name = useSignal("");
+    const unit = (documentState.value?.unit ?? "m") as LengthUnit;
     return (
         <div class="compare" tabIndex={0} role="region" aria-label="Variants side by side">
             {all.map((v) => (
@@ -53,7 +55,7 @@ export function VariantsPage() {
                         <table class="figures" style={{ margin: "8px 0" }}>
                             <tbody>
                                 {v.checks.map((c) => (
-                                    <tr key={c.key}><th scope="row">{c.title}</th><td><span class="row" style={{ justifyContent: "flex-end" }}><Icon name={severityIcon[c.severity]} size={16} class={`icon ${severityClass[c.severity]}`} />{c.answer}</span></td></tr>
+                                    <tr key={c.key}><th scope="row">{checkWords(c, unit).question}</th><td><span class="row" style={{ justifyContent: "flex-end" }}><Icon name={severityIcon[c.severity]} size={16} class={`icon ${severityClass[c.severity]}`} />{checkWords(c, unit).answer}</span></td></tr>
                                 ))}
                             </tbody>
                         </table>

@@ -116,6 +116,7 @@ function ViewFrame({ id, rect, many }: { id: ViewId; rect: Rect; many: boolean }
                 {mode.value !== "analyse" && <Tool icon={many ? "expand" : "shrink"} name={many ? `Only ${titles[id].toLowerCase()}` : "Both views"} small onClick={toggle} />}
             </div>
             {(id === "flat" || (id === "deployed" && (!many || narrow.value))) && <Legend />}
+            {id === "deployed" && mode.value === "analyse" && <ForceKey />}
             {view && <ScaleBar view={view} hidden={id === "deployed"} />}
             {id === "deployed" && view && <Axes view={view} />}
         </div>
@@ -136,6 +137,22 @@ function ViewTitle({ id }: { id: ViewId }) {
             <b>{name}</b>
             <span>{flat || mode.value === "analyse" ? `${count(shell.linkage.panels)} panels, ` : ""}{extent(b.min, b.max, flat ? 2 : 3, unit)}</span>
         </>
+    );
+}
+
+/** What the cones and arrows stand for. */
+function ForceKey() {
+    revision.value;
+    const shell = currentShell();
+    if (!shell?.supports.some((s) => s === 1)) return null;
+    let largest = 0;
+    const r = shell.reactions;
+    if (r) for (let k = 0; k < r.length; k += 3) largest = Math.max(largest, Math.hypot(r[k], r[k + 1], r[k + 2]));
+    return (
+        <div class="force-key float">
+            <span><svg width="16" height="12" viewBox="0 0 16 12" aria-hidden="true"><path d="M8 1l5 10H3z" fill="currentColor" /></svg>Support</span>
+            {r && <span><svg width="16" height="12" viewBox="0 0 16 12" aria-hidden="true"><path d="M0 6h11M10 2.5l6 3.5-6 3.5z" fill="currentColor" stroke="currentColor" /></svg>Reaction, 0 to {count(largest)} N</span>}
+        </div>
     );
 }
 

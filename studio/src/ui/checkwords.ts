@@ -1,0 +1,27 @@
+// A check in the few words that fit its cell. What the page has no shorter words for stays as the server put it.
+import type { Check } from "../protocol/types";
+import { type LengthUnit, length, number } from "./format";
+
+export interface CheckWords {
+    question: string;
+    answer: string;
+    limit: string;
+}
+
+const capital = (s: string) => s.charAt(0).toUpperCase() + s.slice(1);
+
+export function checkWords(c: Check, unit: LengthUnit): CheckWords {
+    const v = c.value;
+    const limit = capital(c.limit.replace(/ deg\b/, "°").replace(/^([\d.e-]+) (mm|cm|m)$/, (_, n: string, u: string) => `Limit ${length(Number(n), u as LengthUnit)}`));
+    const words = (question: string, answer: string | null): CheckWords => ({ question, answer: answer ?? capital(c.answer), limit });
+    switch (c.key) {
+        case "scale": return words("Scale factor λ", null);
+        case "mouth": return words("Smallest mouth", v === null ? null : `${number((v * 180) / Math.PI, 1)}°`);
+        case "overlap": return words("Overlaps", v === 0 ? "None" : null);
+        case "curvature": return words("Bulges outward", v === 0 ? "Everywhere" : v === null ? null : `Not on ${number(100 * v, v < 0.1 ? 1 : 0)} %`);
+        case "rim": return words("Rim and constraints", v === null ? null : v < 1e-9 ? "Exactly met" : `${length(v, unit)} off`);
+        case "match": return words("Simulated to design", v === null ? null : `${number(v, 3)} L rms`);
+        case "force": return words("Forces in balance", null);
+        default: return words(c.title, null);
+    }
+}
