@@ -1,6 +1,6 @@
 // What the server said last. Components read the signals; the scene listens to `onShell`, which is called for every frame.
 import { batch, computed, signal } from "@preact/signals";
-import { type Frame, kinds } from "../protocol/frames";
+import { type Frame, kinds, section } from "../protocol/frames";
 import { CommandError, type Connect, Link } from "../protocol/link";
 import type {
     Check, DocumentEvent, Hello, LinkageEvent, OperatorCall, OperatorSchema, Problem, ProgressEvent, ReportEvent, ServerEvent,
@@ -21,7 +21,8 @@ export const progress = signal<ProgressEvent | null>(null);
 export const problem = signal<{ error: Problem; about: string } | null>(null);
 export const closedMessage = signal<string | null>(null);
 
-/** The shell itself is no signal: it changes 60 times a second. `topology` and `revision` tell when to look again. */
+/** The shell itself is no signal: it changes 60 times a second. `topology` rises with every linkage, `revision`
+ *  with every frame. */
 let shell: Shell | null = null;
 export const topology = signal(0);
 /** Rises with every frame, at most once per animation frame. */
@@ -94,7 +95,7 @@ function receive(event: ServerEvent): void {
         case "hello":
             hello.value = event;
             closedMessage.value = null;
-            join(event).catch((error: unknown) => report_(error, "join"));
+            join(event).catch((error: unknown) => showProblem(error, "join"));
             break;
         case "document":
             remember(event.id);
@@ -128,7 +129,7 @@ function receive(event: ServerEvent): void {
     }
 }
 
-function report_(error: unknown, about: string): void {
+function showProblem(error: unknown, about: string): void {
     const p: Problem = error instanceof CommandError ? error.problem
         : { status: 1, word: "failed", message: error instanceof Error ? error.message : String(error) };
     if (p.word !== "cancelled") problem.value = { error: p, about };
@@ -141,12 +142,13 @@ function receiveFrame(frame: Frame): void {
         return;
     }
     let linkage = false;
-    if (!shell || frame.topology !== shell.topology) {
-        if (!announced || announced.topology !== frame.topology) return; // of a linkage that was replaced meanwhile
+    // documents count their linkages alike: what makes a new one is that its triangles come
+    if (!shell || frame.topology !== shell.topology || frame.sections.has(section.triangles)) {
+        if (!announced || announced.topology !== frame.topology || !frame.sections.has(section.triangles)) return; // of a linkage that was replaced meanwhile
         shell = new Shell(announced, frame);
         linkage = true;
         batch(() => {
-            topology.value = frame.topology;
+            topology.value++;
             revision.value++;
         });
     } else shell.take(frame);
@@ -166,7 +168,7 @@ export async function command(name: string, parameters: Record<string, unknown> 
     try {
         return await link!.ask(name, parameters);
     } catch (error) {
-        report_(error, name);
+        showProblem(error, name);
         return null;
     }
 }

@@ -127,7 +127,8 @@ export function NumberField({ value, unit = "", documentUnit, lo = null, hi = nu
     const [wrong, setWrong] = useState("");
     const message = useId();
     const label = unitLabel(unit, documentUnit);
-    const range = () => lo !== null && hi !== null && hi < 1e8 ? `Between ${number(lo, decimals(lo, 2))} and ${number(hi, decimals(hi, 3))}` : lo !== null && (hi === null || hi >= 1e8) ? `At least ${lo}` : hi !== null ? `At most ${hi}` : "A number";
+    const plain = (v: number) => String(Number(v.toPrecision(4)));
+    const range = () => lo !== null && hi !== null ? `Between ${plain(lo)} and ${plain(hi)}` : lo !== null ? `At least ${plain(lo)}` : hi !== null ? `At most ${plain(hi)}` : "A number";
     const take = (source: string) => {
         setText(null);
         if (source.trim() === "" && onClear) {

@@ -10,15 +10,14 @@ import { Button, Choice, Dialog, NumberRow, Row, Section } from "./controls";
 import { bytes, count, plural } from "./format";
 import { Icon } from "./icons";
 
-const groups: { title: string; endings: string[] }[] = [
-    { title: "Cut", endings: [".svg", ".dxf", ".pdf"] },
-    { title: "Model", endings: [".glb", ".obj", ".stl", ".3mf", ".ply", ".3dm"] },
-    { title: "Data", endings: [".json", ".recipe.json", ".csv"] },
-    { title: "Picture", endings: [".png"] },
+const groups: { title: string; endings: RegExp }[] = [
+    { title: "Cut", endings: /\.(svg|dxf|pdf)$/ },
+    { title: "Model", endings: /\.(glb|obj|stl|3mf|ply|3dm)$/ },
+    { title: "Data", endings: /\.(json|csv)$/ },
+    { title: "Picture", endings: /\.png$/ },
 ];
-const sidewords: Record<string, string> = { ".svg": "laser", ".dxf": "CNC", ".pdf": "print", ".json": "design", ".recipe.json": "recipe", ".csv": "table" };
 const dotted = (e: Exporter) => (e.ending.startsWith(".") ? e.ending : `.${e.ending}`);
-const isCut = (ending: string) => groups[0].endings.includes(ending);
+const isCut = (ending: string) => groups[0].endings.test(ending);
 /** Options that cut formats take. */
 const cutDefaults = { sheet: "", kerf: 0 };
 
@@ -101,21 +100,21 @@ export function ExportDialog() {
             <div class="export">
                 <div class="formats" role="radiogroup" aria-label="Format">
                     {groups.map((g) => {
-                        const all = exporters.filter((e) => g.endings.includes(dotted(e)));
+                        const all = exporters.filter((e) => g.endings.test(dotted(e)));
                         if (!all.length && g.title !== "Picture") return null;
                         return (
                             <div key={g.title}>
                                 <h3>{g.title}</h3>
                                 {all.map((e) => (
                                     <button key={e.ending} type="button" role="radio" aria-checked={ending.value === dotted(e)} onClick={() => ((ending.value = dotted(e)), (state.value = ""))}>
-                                        {e.name}<span>{sidewords[dotted(e)] ?? ""}</span>
+                                        {e.name}<span>{dotted(e)}</span>
                                     </button>
                                 ))}
                                 {g.title === "Picture" && <button type="button" role="radio" aria-checked={ending.value === "picture"} onClick={() => (ending.value = "picture")}>PNG of the view<span>screen</span></button>}
                             </div>
                         );
                     })}
-                    {exporters.filter((e) => !groups.some((g) => g.endings.includes(dotted(e)))).map((e) => (
+                    {exporters.filter((e) => !groups.some((g) => g.endings.test(dotted(e)))).map((e) => (
                         <button key={e.ending} type="button" role="radio" aria-checked={ending.value === dotted(e)} onClick={() => (ending.value = dotted(e))}>{e.name}</button>
                     ))}
                 </div>
