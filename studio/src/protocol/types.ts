@@ -56,7 +56,7 @@ export interface Hello {
     operators: OperatorSchema[];
     exporters: Exporter[];
     examples: { name: string; title: string; doc: string }[];
-    recovered: { name: string; title: string; time: number }[];
+    recovered: { name: string; title?: string; time: number }[];
     limits: { message: number; upload: number; triangles: number };
 }
 

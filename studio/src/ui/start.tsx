@@ -78,7 +78,7 @@ export function StartPage() {
                     <section class="card" aria-labelledby="recent">
                         <h2 id="recent">Recent</h2>
                         <div class="recent">
-                            {recovered.map((r) => <button key={r.name} type="button" onClick={() => void go("open", { recovered: r.name })}><Icon name="restart" size={16} /><span class="ellipsis">{r.title}</span><span class="when">Recovered, {time(r.time)}</span></button>)}
+                            {recovered.map((r) => <button key={r.name} type="button" onClick={() => void go("open", { recovered: r.name })}><Icon name="restart" size={16} /><span class="ellipsis">{r.title ?? r.name}</span><span class="when">Recovered, {time(r.time)}</span></button>)}
                             {recent.value.map((f) => <button key={f.name} type="button" onClick={() => void go("open", { path: f.name })}><Icon name="file" size={16} /><span class="ellipsis">{f.name.replace(/\.auxshell$/, "")}</span><span class="when">{time(f.time)}</span></button>)}
                         </div>
                         {recent.value.length + recovered.length === 0 && <p class="muted">Designs that you save in {hello.value?.folder ?? "the folder"} are listed here.</p>}
