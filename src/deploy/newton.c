@@ -210,10 +210,10 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
             kappa = penalty_near;
         double mu = kappa * stiffness;
 
-        // inertia correction: raise the shift until the factorisation succeeds
+        // inertia correction: raise the shift until the factorisation succeeds, in large steps while its size is unknown
         bool definite = false;
         for (int tries = 0; tries < 40 && !(definite = factorise(s, at, force, fmax(shift, neutral), mu)); ++tries) {
-            shift = shift > 0 ? 4 * shift : fmax(least, last_shift / 2);
+            shift = shift > 0 ? (last_shift > 0 ? 4 : 16) * shift : fmax(least, last_shift / 2);
             hold = 2;
         }
         if (!definite)
@@ -278,7 +278,7 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
             if (hold > 0 && !fast)
                 --hold;
             else {
-                shift *= fast ? 0.1 : 0.25;
+                shift *= fast ? 0.1 : fabs(ratio - 1) < 0.1 ? 1.0 / 16 : 0.25;
                 if (shift < 0.05 * least)
                     shift = 0;
             }
