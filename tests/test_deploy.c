@@ -383,6 +383,103 @@ static double slide(int kind, bool gravity, double reach, bool even, ax_deployme
     return energy;
 }
 
+// A row of `links` triangles joined corner to corner, base edges of length 1 and apexes `depth` off the bases; its ends held
+// `span` apart. Hinges 0 to links are the chain, the rest the apexes. One link hangs from both its base corners.
+typedef struct strip {
+    ax_linkage linkage;
+    double (*flat)[2], (*held)[3];
+    ax_hold* holds;
+} strip;
+
+static strip make_strip(int links, double depth, double span)
+{
+    int n = 2 * links + 1;
+    strip s = {.linkage = {.triangle_count = links, .hinge_count = n}};
+    s.linkage.triangles = ax_alloc((size_t)links, sizeof *s.linkage.triangles);
+    s.linkage.hole_start = AX_NEW0(int, 1);
+    s.linkage.opening_start = AX_NEW0(int, 1);
+    s.linkage.on_rim = AX_NEW0(unsigned char, n);
+    s.flat = ax_calloc((size_t)n, sizeof *s.flat);
+    s.held = ax_calloc((size_t)n, sizeof *s.held);
+    s.holds = AX_NEW0(ax_hold, n);
+    for (int h = 0; h < n; ++h) {
+        s.flat[h][0] = h <= links ? h : h - links - 0.5, s.flat[h][1] = h <= links ? 0 : depth;
+        s.linkage.on_rim[h] = h == 0 || h >= links;
+    }
+    for (int t = 0; t < links; ++t)
+        s.linkage.triangles[t][0] = t, s.linkage.triangles[t][1] = t + 1, s.linkage.triangles[t][2] = links + 1 + t;
+    s.holds[0].kind = s.holds[links].kind = AX_HOLD_FIXED;
+    s.held[links][0] = span;
+    return s;
+}
+
+static void free_strip(strip* s)
+{
+    ax_linkage_free(&s->linkage);
+    ax_free(s->flat);
+    ax_free(s->held);
+    ax_free(s->holds);
+}
+
+static void a_panel_hangs_straight_down_from_its_hinge(void** state)
+{
+    (void)state;
+    strip s = make_strip(1, 0.7, 1);
+    double unit_load, down[3] = {0, 0, -1}, x[3][3], force[3];
+    ax_deploy_model m = ax_deploy_model_make(&s.linkage, (const double(*)[2])s.flat, (const double(*)[3])s.held,
+                                             s.holds, down, &unit_load);
+    assert_near(unit_load, 0.35, 1e-15);
+    assert_int_equal(m.edge_count, 2);
+    ax_deployment result = deploy(&m, x, force);
+    assert_true(result.exact);
+    assert_near(x[2][0] * m.unit, 0, 1e-9);
+    assert_near(x[2][1] * m.unit, 0, 1e-9);
+    assert_near(x[2][2] * m.unit, -0.7, 1e-9);
+    // a third of the weight hangs in two legs
+    double leg = hypot(0.5, 0.7);
+    assert_near(force[0], 1.0 / 3 / 2 * leg / 0.7, 1e-9);
+    assert_near(force[1], 1.0 / 3 / 2 * leg / 0.7, 1e-9);
+    ax_deploy_model_free(&m);
+    free_strip(&s);
+}
+
+// Every link is a rigid body in balance: moments about its left joint give one horizontal force for the whole chain. And with
+// flat links its shape is the catenary.
+static void a_strip_hangs_as_a_catenary(void** state)
+{
+    (void)state;
+    enum { LINKS = 20 };
+    const double depth = 0.08, span = 16;
+    strip s = make_strip(LINKS, depth, span);
+    double unit_load, down[3] = {0, 0, -1}, weight = 1.0 / LINKS, (*x)[3], *force, horizontal = 0;
+    ax_deploy_model m = ax_deploy_model_make(&s.linkage, (const double(*)[2])s.flat, (const double(*)[3])s.held,
+                                             s.holds, down, &unit_load);
+    x = ax_alloc((size_t)m.hinges, sizeof *x), force = AX_NEW0(double, m.edge_count);
+    ax_deployment result = deploy(&m, x, force);
+    assert_true(result.exact && result.stable);
+    double c = span; // of the catenary z = c cosh(x / c): its arc is as long as the chain
+    for (int round = 0; round < 200; ++round)
+        c += 0.5 * c * (2 * c * sinh(span / (2 * c)) - LINKS) / LINKS;
+    for (int k = 0; k < LINKS; ++k) {
+        const double *a = x[k], *b = x[k + 1], *apex = x[LINKS + 1 + k], right = 0.5 - (k + 1) * weight;
+        double rise = b[2] - a[2];
+        assert_near(a[1], 0, 1e-7); // in the plane of the ends and the load
+        if (fabs(rise) < 0.1)
+            continue;
+        double pull = -((b[0] - a[0]) * (right + weight / 3) + (apex[0] - a[0]) * weight / 3) / rise;
+        if (horizontal == 0)
+            horizontal = pull;
+        assert_near(pull, horizontal, 1e-8);
+    }
+    assert_near(horizontal, c / LINKS, 0.01 * c / LINKS);
+    double sag = (x[0][2] - x[LINKS / 2][2]) * m.unit;
+    assert_near(sag, c * (cosh(span / (2 * c)) - 1), 0.01 * sag);
+    ax_free(x);
+    ax_free(force);
+    ax_deploy_model_free(&m);
+    free_strip(&s);
+}
+
 static void rims_slide_to_one_state_from_even_starts(void** state)
 {
     (void)state;
@@ -488,6 +585,8 @@ int main(void)
         cmocka_unit_test(hessian_agrees_with_differences_where_hinges_slide),
         cmocka_unit_test(reactions_at_the_rim_balance_the_whole_load),
         cmocka_unit_test(no_feasible_neighbour_has_less_energy),
+        cmocka_unit_test(a_panel_hangs_straight_down_from_its_hinge),
+        cmocka_unit_test(a_strip_hangs_as_a_catenary),
         cmocka_unit_test(rims_slide_to_one_state_from_even_starts),
         cmocka_unit_test(arches_stay_in_their_plane_and_push_across_it_alone),
         cmocka_unit_test(a_rim_that_gathers_on_a_long_curve_is_told),

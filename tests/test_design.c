@@ -1,6 +1,7 @@
 // The main job on analytic surfaces: every figure of the report within what is promised, judged from the states.
 #include "analysis/measure.h"
 #include "ax/design.h"
+#include "base/random.h"
 #include "base/vec.h"
 #include "design/simulate.h"
 #include "support/shapes.h"
@@ -47,6 +48,29 @@ static void a_spherical_cap_becomes_a_proven_linkage(void** state)
         assert_near(d.scale_ratio, 1 / pow(cos(0.45), 2), 2e-3);
         ax_design_free(&d);
     }
+}
+
+// A membrane of radius 1 under pressure p: pressure times volume, and the stress p / 2 that lines of hinges sqrt(3) L apart
+// carry in three directions, p L / sqrt(3) in each edge. What is left is the coarseness of the panels.
+static void an_inflated_cap_is_the_membrane_of_theory(void** state)
+{
+    (void)state;
+    double off[2], h = 1 - cos(0.9), volume = AX_PI * h * h * (3 - h) / 3;
+    for (int fine = 0; fine < 2; ++fine) {
+        ax_design d = design_cap(fine ? 1200 : 300, AX_BORDER_EQUILATERAL, AX_LOAD_INFLATION);
+        off[fine] = 1 + d.report.energy / (d.load.pressure * volume);
+        double sum = 0;
+        for (int t = 0; t < d.linkage.triangle_count; ++t)
+            for (int k = 0; k < 3; ++k) {
+                const int* corner = d.linkage.triangles[t];
+                double edge = ax_distance2(d.flat[corner[k]], d.flat[corner[(k + 1) % 3]]);
+                sum += d.edge_forces[t][(k + 2) % 3] / edge / (3 * d.linkage.triangle_count);
+            }
+        assert_near(sum, d.load.pressure / sqrt(3), (fine ? 0.03 : 0.06) * d.load.pressure / sqrt(3));
+        ax_design_free(&d);
+    }
+    assert_at_most(fabs(off[0]), 0.03);
+    assert_at_most(fabs(off[1]), 0.5 * fabs(off[0]));
 }
 
 static void whole_panels_inside_and_released_borders_are_exact_too(void** state)
@@ -163,6 +187,51 @@ static void a_shell_held_at_every_other_rim_hinge_hangs_in_balance(void** state)
         fail_msg("%s", error.message);
     assert_at_most(d.report.force_residual, 1e-10);
     assert_at_most(d.report.simulated_edge_error_max, 1e-10);
+    ax_design_free(&d);
+}
+
+static void random_starts_reach_one_state(void** state)
+{
+    (void)state;
+    ax_design d = design_cap(300, AX_BORDER_EQUILATERAL, AX_LOAD_NONE);
+    ax_hold* holds = AX_NEW0(ax_hold, d.linkage.hinge_count);
+    for (int h = 0; h < d.linkage.hinge_count; ++h)
+        holds[h].kind = d.supports[h] ? AX_HOLD_FIXED : AX_HOLD_FREE;
+    for (int gravity = 0; gravity < 2; ++gravity) {
+        double unit_load, up[3] = {0, 0, 1}; // a dome is simulated hung
+        ax_deploy_model m = ax_deploy_model_make(&d.linkage, (const double(*)[2])d.flat, (const double(*)[3])d.deployed,
+                                                 holds, gravity ? up : NULL, &unit_load);
+        double(*x)[3] = ax_alloc((size_t)m.hinges, sizeof *x), (*y)[3] = ax_alloc((size_t)m.hinges, sizeof *y);
+        double* force = AX_NEW0(double, m.edge_count);
+        ax_deployment first;
+        assert_true(ax_deploy(&m, x, force, NULL, &first));
+        assert_true(first.exact);
+        ax_newton* newton = ax_newton_make(&m);
+        for (uint64_t seed = 1; seed <= 3; ++seed) {
+            ax_random random = {seed};
+            ax_deploy_start(&m, 0, y);
+            for (int u = 0; u < m.unknowns; ++u)
+                for (int c = 0; c < 3; ++c)
+                    y[m.hinge[u]][c] += ax_random_uniform(&random, -0.4, 0.4);
+            ax_admm* admm = ax_admm_make(&m, (const double(*)[3])y);
+            ax_residuals residuals;
+            assert_true(ax_admm_run(admm, 1e-4, 6000, NULL, &residuals));
+            memcpy(y, ax_admm_places(admm), (size_t)m.hinges * sizeof *y);
+            ax_admm_forces(admm, force);
+            ax_admm_free(admm);
+            ax_newton_result r = ax_newton_run(newton, y, force, 200, NULL);
+            assert_true(r.exact && r.stable);
+            assert_near(r.energy, first.energy, 1e-9);
+            for (int h = 0; h < m.hinges; ++h)
+                assert_near(ax_distance3(x[h], y[h]), 0, 1e-6);
+        }
+        ax_newton_free(newton);
+        ax_free(x);
+        ax_free(y);
+        ax_free(force);
+        ax_deploy_model_free(&m);
+    }
+    ax_free(holds);
     ax_design_free(&d);
 }
 
@@ -360,12 +429,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_spherical_cap_becomes_a_proven_linkage),
+        cmocka_unit_test(an_inflated_cap_is_the_membrane_of_theory),
         cmocka_unit_test(whole_panels_inside_and_released_borders_are_exact_too),
         cmocka_unit_test(simulation_reads_nothing_of_the_deployed_interior),
         cmocka_unit_test(the_same_options_give_the_same_bits),
         cmocka_unit_test(real_loads_scale_forces_and_nothing_else),
         cmocka_unit_test(supports_are_chosen_in_words),
         cmocka_unit_test(a_shell_held_at_every_other_rim_hinge_hangs_in_balance),
+        cmocka_unit_test(random_starts_reach_one_state),
         cmocka_unit_test(a_rim_that_slides_on_its_circle_stays_near_the_design),
         cmocka_unit_test(arches_are_supports_in_their_planes),
         cmocka_unit_test(far_away_and_small_models_lose_nothing),
