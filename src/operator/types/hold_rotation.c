@@ -47,7 +47,8 @@ static ax_status apply(const ax_operator_context* context, const void* given, ax
     double centre[2], c = cos(2 * AX_PI / a->order), s = sin(2 * AX_PI / a->order);
     const double matrix[2][2] = {{c, -s}, {s, c}};
     ax_hold_centre(&view, a->centre, centre);
-    int *partner = AX_NEW(int, view.linkage->hinge_count), *orbits = AX_NEW(int, count), n = 0;
+    int *partner = AX_NEW(int, view.linkage->hinge_count), *orbits = AX_NEW(int, count + a->order),
+        n = 0; // the last may begin in vain
     int found = ax_hold_match(&view, count, hinges, centre, matrix, partner);
     for (int k = 0; k < count; ++k)
         n += take_orbit(partner, hinges[k], a->order, orbits + n);
