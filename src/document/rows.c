@@ -13,17 +13,19 @@ static const struct {
     size_t size;
 } elements[] = {[AX_F64] = {"f64", 8}, [AX_I32] = {"i32", 4}, [AX_U8] = {"u8", 1}};
 
-ax_rows ax_rows_begin(sqlite3* db, bool loading)
+ax_rows ax_rows_begin(sqlite3* db, sqlite3_int64 design, bool loading)
 {
-    ax_rows rows = {.db = db, .loading = loading};
-    rows.result = sqlite3_prepare_v2(
-        db, loading ? "SELECT value FROM property WHERE name = ?1" : "INSERT INTO property VALUES(?1, ?2)", -1,
-        &rows.property, NULL);
+    ax_rows rows = {.db = db, .design = design, .loading = loading};
+    rows.result = sqlite3_prepare_v2(db,
+                                     loading ? "SELECT value FROM property WHERE design = ?1 AND name = ?2"
+                                             : "INSERT INTO property VALUES(?1, ?2, ?3)",
+                                     -1, &rows.property, NULL);
     if (rows.result == SQLITE_OK)
-        rows.result = sqlite3_prepare_v2(db,
-                                         loading ? "SELECT type, width, count, data FROM array WHERE name = ?1"
-                                                 : "INSERT INTO array VALUES(?1, ?2, ?3, ?4, ?5)",
-                                         -1, &rows.array, NULL);
+        rows.result =
+            sqlite3_prepare_v2(db,
+                               loading ? "SELECT type, width, count, data FROM array WHERE design = ?1 AND name = ?2"
+                                       : "INSERT INTO array VALUES(?1, ?2, ?3, ?4, ?5, ?6)",
+                               -1, &rows.array, NULL);
     return rows;
 }
 
@@ -45,11 +47,12 @@ void ax_rows_damaged(ax_rows* rows, const char* name)
         snprintf(rows->damaged, sizeof rows->damaged, "%s", name);
 }
 
-static void start(sqlite3_stmt* row, const char* name)
+static void start(const ax_rows* rows, sqlite3_stmt* row, const char* name)
 {
     sqlite3_reset(row);
     sqlite3_clear_bindings(row);
-    sqlite3_bind_text(row, 1, name, -1, SQLITE_STATIC);
+    sqlite3_bind_int64(row, 1, rows->design);
+    sqlite3_bind_text(row, 2, name, -1, SQLITE_STATIC);
 }
 
 static void insert(ax_rows* rows, sqlite3_stmt* row)
@@ -62,7 +65,7 @@ static void insert(ax_rows* rows, sqlite3_stmt* row)
 // True if there is a row of that name; its absence is damage unless it is optional.
 static bool find(ax_rows* rows, sqlite3_stmt* row, const char* name, bool optional)
 {
-    start(row, name);
+    start(rows, row, name);
     int result = sqlite3_step(row);
     if (result == SQLITE_DONE && !optional)
         ax_rows_damaged(rows, name);
@@ -76,8 +79,8 @@ void ax_rows_real(ax_rows* rows, const char* name, double* value)
     if (!ax_rows_sound(rows))
         return;
     if (!rows->loading) {
-        start(rows->property, name);
-        sqlite3_bind_double(rows->property, 2, *value); // SQLite makes NaN NULL
+        start(rows, rows->property, name);
+        sqlite3_bind_double(rows->property, 3, *value); // SQLite makes NaN NULL
         insert(rows, rows->property);
     } else if (find(rows, rows->property, name, false)) {
         int type = sqlite3_column_type(rows->property, 0);
@@ -95,8 +98,8 @@ void ax_rows_whole(ax_rows* rows, const char* name, int* value, int lo, int hi)
     if (!ax_rows_sound(rows))
         return;
     if (!rows->loading) {
-        start(rows->property, name);
-        sqlite3_bind_int(rows->property, 2, *value);
+        start(rows, rows->property, name);
+        sqlite3_bind_int(rows->property, 3, *value);
         insert(rows, rows->property);
     } else if (find(rows, rows->property, name, false)) {
         sqlite3_int64 stored = sqlite3_column_int64(rows->property, 0);
@@ -119,8 +122,8 @@ bool ax_rows_word(ax_rows* rows, const char* name, const char* now, char text[16
     if (!ax_rows_sound(rows))
         return false;
     if (!rows->loading) {
-        start(rows->property, name);
-        sqlite3_bind_text(rows->property, 2, now, -1, SQLITE_STATIC);
+        start(rows, rows->property, name);
+        sqlite3_bind_text(rows->property, 3, now, -1, SQLITE_STATIC);
         insert(rows, rows->property);
         return false;
     }
@@ -177,12 +180,12 @@ void* ax_rows_array(ax_rows* rows, const char* name, ax_element type, int width,
         return find(rows, rows->array, name, optional) ? load_array(rows, name, type, width, count) : NULL;
     if (!now)
         return NULL;
-    start(rows->array, name);
-    sqlite3_bind_text(rows->array, 2, elements[type].name, -1, SQLITE_STATIC);
-    sqlite3_bind_int(rows->array, 3, width);
-    sqlite3_bind_int(rows->array, 4, count);
+    start(rows, rows->array, name);
+    sqlite3_bind_text(rows->array, 3, elements[type].name, -1, SQLITE_STATIC);
+    sqlite3_bind_int(rows->array, 4, width);
+    sqlite3_bind_int(rows->array, 5, count);
     size_t bytes = (size_t)width * (size_t)count * elements[type].size;
-    int result = sqlite3_bind_blob64(rows->array, 5, now, bytes, SQLITE_STATIC);
+    int result = sqlite3_bind_blob64(rows->array, 6, now, bytes, SQLITE_STATIC);
     if (result == SQLITE_OK)
         insert(rows, rows->array);
     else

@@ -11,13 +11,15 @@ typedef enum ax_element { AX_F64, AX_I32, AX_U8 } ax_element;
 // After the first failure every call does nothing, so that a description needs no checks between.
 typedef struct ax_rows {
     sqlite3* db;
+    sqlite3_int64 design;
     bool loading;
     int result;       // of SQLite
     char damaged[64]; // name of the first row that does not hold what it should, else empty
     sqlite3_stmt *property, *array;
 } ax_rows;
 
-ax_rows ax_rows_begin(sqlite3* db, bool loading);
+// Of the design with this number.
+ax_rows ax_rows_begin(sqlite3* db, sqlite3_int64 design, bool loading);
 void ax_rows_end(ax_rows* rows);
 bool ax_rows_sound(const ax_rows* rows);
 void ax_rows_damaged(ax_rows* rows, const char* name);

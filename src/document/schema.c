@@ -1,5 +1,7 @@
 #include "document/schema.h"
 
+#include "document/sql.h"
+
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,6 +12,30 @@ static const char* const steps[] = {
     "CREATE TABLE array(name TEXT PRIMARY KEY NOT NULL, type TEXT NOT NULL, width INTEGER NOT NULL,"
     " count INTEGER NOT NULL, data BLOB NOT NULL);"
     "CREATE TABLE seal(digest INTEGER NOT NULL);",
+    // History. Steps are a tree: each is an operator (JSON text) after its parent, 0 being the beginning, so that what several
+    // moments have in common is there once. A moment has all steps up to `tip`, which are `steps`, and the state after step `state`,
+    // which is number `at` of them. Designs belong to the step that finished them, checkpoints (forms) to the one they follow.
+    // What was there becomes the beginning of a history.
+    "ALTER TABLE property RENAME TO old_property;"
+    "ALTER TABLE array RENAME TO old_array;"
+    "CREATE TABLE property(design INTEGER NOT NULL, name TEXT NOT NULL, value, PRIMARY KEY(design, name));"
+    "CREATE TABLE array(design INTEGER NOT NULL, name TEXT NOT NULL, type TEXT NOT NULL, width INTEGER NOT NULL,"
+    " count INTEGER NOT NULL, data BLOB NOT NULL, PRIMARY KEY(design, name));"
+    "INSERT INTO property SELECT 0, name, value FROM old_property;"
+    "INSERT INTO array SELECT 0, name, type, width, count, data FROM old_array;"
+    "DROP TABLE old_property;"
+    "DROP TABLE old_array;"
+    "CREATE TABLE step(id INTEGER PRIMARY KEY, parent INTEGER NOT NULL, operator TEXT NOT NULL);"
+    "CREATE INDEX step_after ON step(parent);"
+    "CREATE TABLE moment(number INTEGER PRIMARY KEY, tip INTEGER NOT NULL, state INTEGER NOT NULL, steps INTEGER NOT "
+    "NULL,"
+    " at INTEGER NOT NULL, words TEXT NOT NULL, time REAL, failure TEXT);"
+    "CREATE TABLE session(now INTEGER NOT NULL, folder TEXT NOT NULL);"
+    "CREATE TABLE checkpoint(step INTEGER PRIMARY KEY, form BLOB NOT NULL);"
+    "INSERT INTO moment VALUES(0, 0, 0, 0, 0, 'Start', NULL, NULL);"
+    "INSERT INTO session VALUES(0, '');"
+    "DROP TABLE seal;"
+    "CREATE TABLE seal(name TEXT PRIMARY KEY NOT NULL, digest INTEGER NOT NULL);",
 };
 
 const ax_schema ax_document_schema = {.version = sizeof steps / sizeof *steps, .steps = steps};
@@ -90,54 +116,72 @@ static uint64_t mix_row(uint64_t state, sqlite3_stmt* row)
     return state;
 }
 
-// Sum over the rows of all tables but the seal's own, so that the order in which SQLite finds them does not matter.
-static int digest_all(sqlite3* db, uint64_t* digest)
+// Sum over the rows, so that the order in which SQLite finds them does not matter.
+static int digest_table(sqlite3* db, const char* name, uint64_t* digest)
 {
-    sqlite3_stmt* tables = NULL;
+    uint64_t seed = mix(0, name, strlen(name));
     *digest = 0;
-    int result = sqlite3_prepare_v2(db,
-                                    "SELECT name FROM sqlite_schema WHERE type = 'table' AND name <> 'seal'"
-                                    " AND name NOT LIKE 'sqlite_%'",
-                                    -1, &tables, NULL);
-    while (result == SQLITE_OK && (result = sqlite3_step(tables)) == SQLITE_ROW) {
-        const char* name = (const char*)sqlite3_column_text(tables, 0);
-        uint64_t seed = mix(0, name, strlen(name));
-        char* sql = sqlite3_mprintf("SELECT * FROM \"%w\"", name);
-        sqlite3_stmt* rows = NULL;
-        result = sql ? sqlite3_prepare_v2(db, sql, -1, &rows, NULL) : SQLITE_NOMEM;
-        while (result == SQLITE_OK && (result = sqlite3_step(rows)) == SQLITE_ROW) {
-            *digest += mix_row(seed, rows);
-            result = SQLITE_OK;
-        }
-        result = result == SQLITE_DONE ? SQLITE_OK : result;
-        sqlite3_finalize(rows);
-        sqlite3_free(sql);
-    }
-    sqlite3_finalize(tables);
-    return result == SQLITE_DONE ? SQLITE_OK : result;
-}
-
-int ax_schema_seal(sqlite3* db)
-{
-    uint64_t digest;
-    int result = digest_all(db, &digest);
-    char* sql = sqlite3_mprintf("DELETE FROM seal; INSERT INTO seal VALUES(%lld)", (sqlite3_int64)digest);
-    if (result == SQLITE_OK)
-        result = sql ? sqlite3_exec(db, sql, NULL, NULL, NULL) : SQLITE_NOMEM;
+    char* sql = sqlite3_mprintf("SELECT * FROM \"%w\"", name);
+    int result = SQLITE_OK;
+    sqlite3_stmt* rows = ax_sql_ask(db, sql, "");
+    if (!rows)
+        result = sqlite3_errcode(db);
+    while (rows && ax_sql_next(rows, &result))
+        *digest += mix_row(seed, rows);
+    sqlite3_finalize(rows);
     sqlite3_free(sql);
     return result;
 }
 
-int ax_schema_check_seal(sqlite3* db, bool* sound)
+static const char sealed_tables[] = "SELECT name FROM sqlite_schema WHERE type = 'table' AND name <> 'seal'"
+                                    " AND name <> 'checkpoint' AND name NOT LIKE 'sqlite_%'";
+
+int ax_schema_seal_table(sqlite3* db, const char* table)
 {
     uint64_t digest;
-    sqlite3_stmt* seal = NULL;
-    int result = digest_all(db, &digest);
-    if (result == SQLITE_OK)
-        result = sqlite3_prepare_v2(db, "SELECT digest FROM seal", -1, &seal, NULL);
-    if (result == SQLITE_OK)
-        result = sqlite3_step(seal);
-    *sound = result == SQLITE_ROW && sqlite3_column_int64(seal, 0) == (sqlite3_int64)digest;
+    int result = digest_table(db, table, &digest);
+    return result == SQLITE_OK
+               ? ax_sql_run(db, "INSERT OR REPLACE INTO seal VALUES(?1, ?2)", "ti", table, (int64_t)digest)
+               : result;
+}
+
+int ax_schema_seal(sqlite3* db)
+{
+    int result = ax_sql_run(db, "DELETE FROM seal", "");
+    sqlite3_stmt* tables = ax_sql_ask(db, sealed_tables, "");
+    while (result == SQLITE_OK && ax_sql_next(tables, &result))
+        result = ax_schema_seal_table(db, (const char*)sqlite3_column_text(tables, 0));
+    sqlite3_finalize(tables);
+    return result;
+}
+
+// Version 1 had one digest, the sum of those of the tables.
+static int check_single_seal(sqlite3* db, uint64_t sum, bool* sound)
+{
+    int result = SQLITE_OK;
+    sqlite3_stmt* seal = ax_sql_ask(db, "SELECT digest FROM seal", "");
+    *sound = ax_sql_next(seal, &result) && sqlite3_column_int64(seal, 0) == (sqlite3_int64)sum;
     sqlite3_finalize(seal);
-    return result == SQLITE_ROW || result == SQLITE_DONE ? SQLITE_OK : result;
+    return result;
+}
+
+int ax_schema_check_seal(sqlite3* db, int version, bool* sound)
+{
+    int result = SQLITE_OK;
+    uint64_t sum = 0;
+    *sound = true;
+    sqlite3_stmt* tables = ax_sql_ask(db, sealed_tables, "");
+    while (result == SQLITE_OK && ax_sql_next(tables, &result)) {
+        const char* name = (const char*)sqlite3_column_text(tables, 0);
+        uint64_t digest;
+        result = digest_table(db, name, &digest);
+        sum += digest;
+        if (result != SQLITE_OK || version == 1)
+            continue;
+        sqlite3_stmt* seal = ax_sql_ask(db, "SELECT digest FROM seal WHERE name = ?1", "t", name);
+        *sound = ax_sql_next(seal, &result) && sqlite3_column_int64(seal, 0) == (sqlite3_int64)digest && *sound;
+        sqlite3_finalize(seal);
+    }
+    sqlite3_finalize(tables);
+    return result == SQLITE_OK && version == 1 ? check_single_seal(db, sum, sound) : result;
 }

@@ -20,7 +20,9 @@ int ax_schema_upgrade(const ax_schema* schema, sqlite3* db, int from, int to);
 // True if the tables are exactly those of `version`, so that no view, trigger or virtual table of a foreign hand is ever read.
 bool ax_schema_matches(const ax_schema* schema, sqlite3* db, int version);
 
-// A document is sealed: a digest of everything in its tables is kept in one of them, so that damage below SQLite's notice (a
-// flipped bit in a coordinate) is found on opening. SQLite results; `sound` tells whether the seal fits.
-int ax_schema_seal(sqlite3* db);
-int ax_schema_check_seal(sqlite3* db, bool* sound);
+// A document is sealed: a digest of everything in each of its tables is kept in one of them, so that damage below SQLite's notice (a
+// flipped bit in a coordinate) is found on opening. Checkpoints are not: each has a digest of its own and can be computed again, and
+// there are too many to read them all on opening. SQLite results; `sound` tells whether the seals fit.
+int ax_schema_seal(sqlite3* db);                          // all tables
+int ax_schema_seal_table(sqlite3* db, const char* table); // one that was changed
+int ax_schema_check_seal(sqlite3* db, int version, bool* sound);
