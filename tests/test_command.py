@@ -256,11 +256,11 @@ class Trouble(CommandCase):
     def test_full_disk_is_an_error_and_leaves_the_old_file(self):
         content = self.document.read_bytes()
         for words in self.writers():
-            with self.subTest(words=words), small_disk("256k") as disk:
+            with self.subTest(words=words), small_disk("320k") as disk:
                 document = disk / "a.auxshell"
                 document.write_bytes(content)
                 with open(disk / "ballast", "wb") as ballast:  # leaves 8 kB
-                    ballast.write(bytes(256 * 1024 - (len(content) + 4095) // 4096 * 4096 - 8192 - 4096))
+                    ballast.write(bytes(320 * 1024 - (len(content) + 4095) // 4096 * 4096 - 8192 - 4096))
                 moved = [str(word).replace(str(self.folder), str(disk)) for word in words]
                 done = run(*moved)
                 self.assertEqual(done.returncode, 1, done.stdout + done.stderr)

@@ -376,7 +376,7 @@ static void contradictory_contents_are_refused(void** state)
         {"UPDATE array SET data = zeroblob(length(data)) WHERE name = 'on_rim'", "not marked"},
         {"CREATE TRIGGER t AFTER INSERT ON property BEGIN SELECT 1; END", "tables"},
         {"ALTER TABLE array RENAME TO a; CREATE VIEW array AS SELECT * FROM a", "tables"},
-        {"DELETE FROM property", "unit"},
+        {"DELETE FROM property WHERE name <> 'border'", "unit"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
         save(other, &sample);

@@ -625,6 +625,9 @@ static void an_empty_document_takes_a_start(void** state)
     ax_session_close(s);
     s = open_session(path);
     assert_null(ax_session_form(s));
+    ax_design design;
+    assert_int_equal(ax_document_load(path, &design, &error), AX_BAD_INPUT);
+    assert_says(&error, "is empty");
     redo(s);
     assert_non_null(ax_session_form(s));
     ax_session_close(s);
@@ -652,10 +655,9 @@ static bool is_after(const ax_session* s, int done)
     if (count != fills + 1 || now != shown || steps != shown + 1 || ax_session_at(s) != steps)
         return false;
     for (int k = 0, n = 0; k < shown; ++k, ++n) {
-        char value[40];
         n += n % 7 == 5 ? 2 : 0;
-        sprintf(value, "%.6f", 1.1 + 1e-6 * n);
-        if (!strstr(ax_recipe_operator(ax_session_recipe(s), k + 1), value))
+        const char* value = strstr(ax_recipe_operator(ax_session_recipe(s), k + 1), "value");
+        if (!value || !(fabs(strtod(value + strcspn(value, "0123456789"), NULL) - (1.1 + 1e-6 * n)) < 1e-9))
             return false;
     }
     return true;
@@ -668,9 +670,9 @@ static void edit_until_killed(int next, int pipe)
     if (ax_session_open(path, true, "a test", NULL, &s, &error) != AX_OK || ax_session_read_only(s))
         _exit(1);
     for (int n = next;; ++n) {
-        if (scripted_change(s, n, &error) != AX_OK)
+        if (write(pipe, &n, sizeof n) != sizeof n) // acknowledges the one before
             _exit(2);
-        if (write(pipe, &n, sizeof n) != sizeof n) // acknowledged
+        if (scripted_change(s, n, &error) != AX_OK)
             _exit(3);
     }
 }
@@ -690,12 +692,17 @@ static void nothing_acknowledged_is_lost_when_killed(void** state)
             edit_until_killed(done, ends[1]);
         }
         close(ends[1]);
-        usleep((useconds_t)ax_random_uniform(&random, 1000, 60000));
+        // half of the times while it opens the document, else in the midst of its changes
+        if (round % 2 && read(ends[0], &n, sizeof n) == sizeof n)
+            assert_int_equal(n, done);
+        usleep((useconds_t)ax_random_uniform(&random, 0, 100000));
         assert_int_equal(waitpid(child, &ended, WNOHANG), 0); // still at work
         kill(child, SIGKILL);
         waitpid(child, &ended, 0);
-        while (read(ends[0], &n, sizeof n) == sizeof n)
-            assert_int_equal(n, done++);
+        while (read(ends[0], &n, sizeof n) == sizeof n) {
+            assert_in_range(n, done, done + 1);
+            done = n;
+        }
         close(ends[0]);
 
         ax_session* s = open_session(path); // the lock went with its process
@@ -708,7 +715,7 @@ static void nothing_acknowledged_is_lost_when_killed(void** state)
         assert_sound(path);
     }
     print_message("%d changes, %d of them written when they were not acknowledged yet\n", done, unacknowledged);
-    assert_true(done > rounds);
+    assert_true(done > rounds / 8);
 }
 
 static void a_full_disk_leaves_the_document(void** state)
@@ -798,7 +805,7 @@ static void a_contradictory_history_is_refused(void** state)
         "UPDATE moment SET steps = 1000000000",
         "UPDATE moment SET at = 3",
         "UPDATE moment SET state = 1",
-        "UPDATE moment SET number = number + 1; UPDATE session SET now = now + 1",
+        "UPDATE moment SET number = 7 WHERE number = 0",
         "UPDATE step SET parent = id",
         "UPDATE step SET parent = 77 WHERE id = 1",
         "UPDATE step SET operator = '{\"op\": \"wish\"}'",
@@ -995,8 +1002,10 @@ static void a_document_of_version_1_is_upgraded_by_its_first_change(void** state
     assert_null(design);
     ax_session_close(s);
     ax_design now;
-    assert_int_equal(ax_document_load(path, &now, &error), AX_BAD_INPUT);
-    assert_says(&error, "auxshell finish");
+    assert_ok(ax_document_load(path, &now, &error), &error); // as it stands
+    assert_int_equal(now.linkage.triangle_count, was.linkage.triangle_count);
+    assert_null(now.simulated);
+    ax_design_free(&now);
     assert_sound(path);
     s = open_session(path);
     undo(s);

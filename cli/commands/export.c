@@ -5,6 +5,7 @@
 
 #include "ax/document.h"
 #include "ax/export.h"
+#include "ax/session.h"
 
 #include <string.h>
 
@@ -55,6 +56,48 @@ static void title_of(const char* path, char* title, size_t size)
         *dot = 0;
 }
 
+static bool ends_in(const char* text, const char* ending)
+{
+    size_t length = strlen(text), part = strlen(ending);
+    return length > part && strcmp(text + length - part, ending) == 0;
+}
+
+static ax_status write_applied(const ax_session* session, const char* path, ax_error* error)
+{
+    char* text = ax_recipe_text(ax_session_recipe(session));
+    ax_recipe* recipe;
+    ax_status status = ax_recipe_parse(text, &recipe, error);
+    ax_free(text);
+    if (status != AX_OK)
+        return status;
+    for (int k = ax_recipe_count(recipe); k > ax_session_at(session); --k)
+        ax_recipe_remove(recipe, k - 1);
+    status = ax_recipe_write(recipe, path, error);
+    ax_recipe_free(recipe);
+    return status;
+}
+
+// The steps that are applied, as a recipe that `run` plays.
+static ax_status export_recipe(const arguments* a, ax_error* error)
+{
+    ax_session* session;
+    ax_status status = ax_session_open(a->document, false, NULL, progress_reporter(), &session, error);
+    progress_end();
+    if (status != AX_OK)
+        return status;
+    if (ax_session_from_design(session))
+        status =
+            ax_fail(error, AX_BAD_INPUT,
+                    "%s began as a finished design, so it has no recipe of its own. Export the design itself: .json.",
+                    a->document);
+    else
+        status = write_applied(session, a->out, error);
+    ax_session_close(session);
+    if (status == AX_OK)
+        printf("Wrote %s\n", a->out);
+    return status;
+}
+
 static ax_status run(const void* given, ax_error* error)
 {
     const arguments* a = given;
@@ -63,6 +106,8 @@ static ax_status run(const void* given, ax_error* error)
     ax_fabricate_options chosen;
     ax_profile profile;
     ax_status status = output_check(a->out, NULL, error);
+    if (status == AX_OK && ends_in(a->out, ".recipe.json"))
+        return export_recipe(a, error);
     if (status == AX_OK)
         status = fabricate_choose(&a->fabricate, &chosen, &profile, error);
     if (status == AX_OK)
@@ -101,7 +146,9 @@ const command command_export = {
     .text =
         "Writes a state of a document to a file, in the format that the file's ending names. Coordinates are those of "
         "the target, in the document's unit; cut files are drawn at true size in millimetres. What fits one sheet gets "
-        "the name given; several sheets become NAME-1, NAME-2 and so on beside an overview of that name.",
+        "the name given; several sheets become NAME-1, NAME-2 and so on beside an overview of that name. "
+        "NAME.recipe.json "
+        "is the recipe: the steps that are applied, to be played by run.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),

@@ -2,10 +2,8 @@
 #include "options.h"
 #include "output.h"
 #include "progress.h"
-#include "report.h"
 
-#include "ax/document.h"
-#include "ax/recipe.h"
+#include "ax/session.h"
 
 #include <limits.h>
 #include <string.h>
@@ -51,47 +49,7 @@ static const command_option options[] = {
      .offset = offsetof(arguments, watch)},
 };
 
-// The form as it was after each operator, so that a changed recipe is played from the first change on.
-typedef struct mark {
-    char* json;
-    void* bytes;
-    size_t size;
-} mark;
-
-typedef struct session {
-    const arguments* given;
-    char folder[PATH_MAX];
-    mark* marks;
-    int mark_count;
-} session;
-
-static void forget_marks(session* s, int from)
-{
-    for (int k = from; k < s->mark_count; ++k) {
-        ax_free(s->marks[k].json);
-        ax_free(s->marks[k].bytes);
-    }
-    s->mark_count = from < s->mark_count ? from : s->mark_count;
-}
-
-static void put_mark(session* s, const char* json, const ax_form* form)
-{
-    s->marks = ax_realloc(s->marks, (size_t)s->mark_count + 1, sizeof *s->marks);
-    mark* m = &s->marks[s->mark_count++];
-    m->json = ax_copy(json, strlen(json) + 1, 1);
-    m->bytes = ax_form_save(form, &m->size);
-}
-
-// How many operators are as they were when they were played last.
-static int unchanged(const session* s, const ax_recipe* recipe, int count)
-{
-    int k = 0;
-    while (k < count && k < s->mark_count && strcmp(s->marks[k].json, ax_recipe_operator(recipe, k)) == 0)
-        ++k;
-    return k;
-}
-
-static bool print_state(ax_form* form)
+static void print_state(ax_form* form)
 {
     ax_form_report r;
     ax_form_measure(form, &r);
@@ -108,77 +66,71 @@ static bool print_state(ax_form* form)
                unit);
     for (int k = 0; k < r.finding_count; ++k)
         printf("%s%s\n", k ? "" : "\n", r.findings[k].text);
-    bool exact = r.exact;
     ax_form_report_free(&r);
-    return exact;
 }
 
-static ax_status save(const session* s, ax_form* form, bool exact, ax_error* error)
+static void print_step(void* context, int k, const char* words)
 {
-    ax_design design = {0};
-    ax_finish finish;
-    ax_status status = AX_OK;
-    if (exact)
-        status = ax_form_finish(form, progress_reporter(), &design, &finish, error);
-    else
-        ax_form_snapshot(form, false, &design);
+    (void)context;
     progress_end();
-    if (status == AX_OK)
-        status = ax_document_save(s->given->out, &design, error);
-    if (status == AX_OK)
-        printf("\nWrote %s: %d triangles.\n", s->given->out, design.linkage.triangle_count);
-    ax_design_free(&design);
-    return status;
+    printf("%3d  %s\n", k + 1, words);
+    fflush(stdout);
 }
 
-// From where `form` stands, after `done` operators.
-static ax_status play_on(session* s, const ax_recipe* recipe, int done, int count, ax_form** form, ax_error* error)
+static int steps_asked(const arguments* a, const ax_recipe* recipe)
 {
-    for (int k = done; k < count; ++k) {
-        ax_progress_part part;
-        const ax_progress* within =
-            ax_progress_within(&part, progress_reporter(), (double)k / count, (k + 1.0) / count);
-        ax_status status = ax_recipe_apply(recipe, k, s->folder, within, form, error);
-        if (status != AX_OK)
-            return status;
+    int count = ax_recipe_count(recipe);
+    return a->until >= 0 && a->until < count ? a->until : count;
+}
+
+static ax_status create(const arguments* a, const ax_recipe* recipe, ax_session** session, ax_error* error)
+{
+    char folder[PATH_MAX];
+    const char* slash = strrchr(a->recipe, '/');
+    if (strlen(a->recipe) >= sizeof folder)
+        return ax_fail(error, AX_USAGE, "The name of the recipe is longer than the system allows.");
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - a->recipe) + 1 : 1, slash ? a->recipe : ".");
+    const ax_session_start start = {
+        .recipe = recipe, .until = a->until, .folder = folder, .program = "auxshell run", .played = print_step};
+    return ax_session_create(a->out, &start, progress_reporter(), session, error);
+}
+
+// The document goes on from what the recipes have in common, as one change that can be undone.
+static ax_status replace(const arguments* a, ax_recipe* recipe, ax_session* session, ax_error* error)
+{
+    const char* why;
+    for (int k = ax_recipe_count(recipe); k > steps_asked(a, recipe); --k)
+        ax_recipe_remove(recipe, k - 1);
+    ax_status status = ax_session_replace(session, recipe, progress_reporter(), error);
+    progress_end();
+    for (int k = 0; k < ax_session_at(session) && status == AX_OK; ++k) {
         char words[160];
         ax_recipe_words(recipe, k, words);
-        progress_end();
-        printf("%3d  %s\n", k + 1, words);
-        fflush(stdout);
-        if (s->given->watch)
-            put_mark(s, ax_recipe_operator(recipe, k), *form);
+        print_step(NULL, k, words);
     }
-    return AX_OK;
+    if (status == AX_OK && ax_session_failed(session, &why) >= 0)
+        status = ax_fail(error, AX_FAILED, "%s The document holds what came before.", why);
+    return status;
 }
 
-static ax_status play(session* s, ax_error* error)
+// Plays into the session, which is made if there is none yet.
+static ax_status play(const arguments* a, ax_session** session, ax_error* error)
 {
     ax_recipe* recipe;
-    ax_status status = ax_recipe_read(s->given->recipe, &recipe, error);
+    ax_status status = ax_recipe_read(a->recipe, &recipe, error);
     if (status != AX_OK)
         return status;
-    int count = ax_recipe_count(recipe);
-    if (s->given->until >= 0 && s->given->until < count)
-        count = s->given->until;
-    int done = unchanged(s, recipe, count);
-    ax_form* form = NULL;
-    forget_marks(s, done);
-    if (count == 0)
-        status =
-            ax_fail(error, AX_BAD_INPUT, "%s has no operators: begin with one that starts a design.", s->given->recipe);
-    if (status == AX_OK && done)
-        status = ax_form_load(s->marks[done - 1].bytes, s->marks[done - 1].size, &form, error);
-    if (status == AX_OK)
-        status = play_on(s, recipe, done, count, &form, error);
+    if (steps_asked(a, recipe) == 0)
+        status = ax_fail(error, AX_BAD_INPUT, "%s has no operators: begin with one that starts a design.", a->recipe);
+    else
+        status = *session ? replace(a, recipe, *session, error) : create(a, recipe, session, error);
     progress_end();
-    if (status == AX_OK) {
-        bool exact = print_state(form);
-        status = save(s, form, exact, error);
-    }
-    ax_form_free(form);
     ax_recipe_free(recipe);
-    return status;
+    if (status != AX_OK)
+        return status;
+    print_state(ax_session_form(*session));
+    printf("\nWrote %s: %d triangles.\n", a->out, ax_form_look(ax_session_form(*session)).linkage->triangle_count);
+    return AX_OK;
 }
 
 // Waits until the file has other times or another size; false after an interrupt. Editors that write beside and rename leave
@@ -199,15 +151,15 @@ static bool wait_for_change(const char* path, struct stat* known)
     }
 }
 
-static ax_status watch(session* s)
+static ax_status watch(const arguments* a, ax_session** session)
 {
     struct stat known = {0};
-    while (wait_for_change(s->given->recipe, &known)) {
+    while (wait_for_change(a->recipe, &known)) {
         ax_error error;
-        if (play(s, &error) != AX_OK && !progress_cancelled())
+        if (play(a, session, &error) != AX_OK && !progress_cancelled())
             fprintf(stderr, "auxshell run: %s\n", error.message);
         if (!progress_cancelled())
-            printf("\nWatching %s.\n", s->given->recipe);
+            printf("\nWatching %s.\n", a->recipe);
         fflush(stdout);
     }
     return AX_OK; // an interrupt is how watching ends
@@ -215,17 +167,12 @@ static ax_status watch(session* s)
 
 static ax_status run(const void* given, ax_error* error)
 {
-    session s = {.given = given};
-    const char* slash = strrchr(s.given->recipe, '/');
-    if (strlen(s.given->recipe) >= sizeof s.folder)
-        return ax_fail(error, AX_USAGE, "The name of the recipe is longer than the system allows.");
-    snprintf(s.folder, sizeof s.folder, "%.*s", slash ? (int)(slash - s.given->recipe) + 1 : 1,
-             slash ? s.given->recipe : ".");
-    ax_status status = output_check(s.given->out, ".auxshell", error);
+    const arguments* a = given;
+    ax_session* session = NULL;
+    ax_status status = output_check(a->out, ".auxshell", error);
     if (status == AX_OK)
-        status = s.given->watch ? watch(&s) : play(&s, error);
-    forget_marks(&s, 0);
-    ax_free(s.marks);
+        status = a->watch ? watch(a, &session) : play(a, &session, error);
+    ax_session_close(session);
     return status;
 }
 

@@ -5,6 +5,7 @@
 #include "report.h"
 
 #include "ax/document.h"
+#include "ax/session.h"
 
 #include <math.h>
 
@@ -74,27 +75,48 @@ static ax_load chosen_load(const arguments* a, const ax_load* present)
     return load;
 }
 
+// The design as the document has it, with the load and supports that were asked.
+static ax_status prepare(const arguments* a, ax_session* session, ax_design* design, ax_load* load, ax_error* error)
+{
+    const ax_design* finished;
+    const char* read_only = ax_session_read_only(session);
+    ax_status status = output_check(a->document, NULL, error);
+    if (status == AX_OK && read_only)
+        status = ax_fail(error, AX_FAILED, "%s", read_only);
+    if (status == AX_OK)
+        status = ax_session_design(session, progress_reporter(), &finished, error);
+    if (status == AX_OK && !finished)
+        status = ax_fail(error, AX_BAD_INPUT, "%s is not finished. Finish it first: auxshell finish %s.", a->document,
+                         a->document);
+    if (status == AX_OK)
+        status = ax_document_load(a->document, design, error);
+    if (status != AX_OK)
+        return status;
+    *load = chosen_load(a, &design->load);
+    if (a->density > 0 && load->kind != AX_LOAD_GRAVITY)
+        return ax_fail(error, AX_USAGE, "--density belongs to --load gravity.");
+    if (a->pressure > 0 && load->kind != AX_LOAD_INFLATION)
+        return ax_fail(error, AX_USAGE, "--pressure belongs to --load inflation.");
+    return a->support ? ax_design_set_supports(design, a->support, error) : AX_OK;
+}
+
 static ax_status run(const void* given, ax_error* error)
 {
     const arguments* a = given;
+    ax_session* session;
     ax_design design = {0};
-    ax_status status = ax_document_load(a->document, &design, error);
-    if (status == AX_OK)
-        status = output_check(a->document, NULL, error);
-    ax_load load = chosen_load(a, &design.load);
-    if (status == AX_OK && a->density > 0 && load.kind != AX_LOAD_GRAVITY)
-        status = ax_fail(error, AX_USAGE, "--density belongs to --load gravity.");
-    if (status == AX_OK && a->pressure > 0 && load.kind != AX_LOAD_INFLATION)
-        status = ax_fail(error, AX_USAGE, "--pressure belongs to --load inflation.");
-    if (status == AX_OK && a->support)
-        status = ax_design_set_supports(&design, a->support, error);
+    ax_load load;
+    ax_status status = ax_session_open(a->document, true, "auxshell simulate", progress_reporter(), &session, error);
+    if (status != AX_OK)
+        return status;
+    status = prepare(a, session, &design, &load, error);
     if (status == AX_OK)
         status = ax_design_simulate(&design, &load, progress_reporter(), error);
     progress_end();
     if (progress_cancelled())
         status = AX_CANCELLED;
     if (status == AX_OK)
-        status = ax_document_save(a->document, &design, error);
+        status = ax_session_put_design(session, &design, error);
     if (status == AX_OK) {
         char words[96];
         load_words(&design.load, words, sizeof words);
@@ -104,6 +126,7 @@ static ax_status run(const void* given, ax_error* error)
         report_print(&design, stdout);
     }
     ax_design_free(&design);
+    ax_session_close(session);
     return status;
 }
 

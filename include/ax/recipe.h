@@ -32,11 +32,19 @@ typedef struct ax_field {
     const char* fallback; // the default in words, where it is no value: "the centre of the sheet"; NULL: see `defaults`
 } ax_field;
 
+// What an operator of the group "finish" made.
+typedef struct ax_finished {
+    bool made;        // the exact design is there
+    ax_design design; // empty unless made; freed by ax_design_free
+    ax_finish figures;
+} ax_finished;
+
 typedef struct ax_operator_context {
     ax_form** form;     // NULL inside before the first operator; operators that start a design put it there
     const char* folder; // relative file names are within it
     bool live;          // a preview while the hand moves: edit, do not settle
     const ax_progress* progress;
+    ax_finished* finished; // where what finishing makes is put; NULL: nowhere
 } ax_operator_context;
 
 typedef struct ax_operator_type {
@@ -66,6 +74,8 @@ ax_status ax_select(ax_form* form, const char* words, int** hinges, int* count, 
 typedef struct ax_recipe ax_recipe;
 
 ax_recipe* ax_recipe_make(void);
+// One that goes on from a form that is there already: no operator of it starts one. Such a recipe is not all of a design.
+ax_recipe* ax_recipe_make_based(void);
 void ax_recipe_free(ax_recipe* recipe);
 // Reads a recipe; every operator is checked against its fields. AX_BAD_INPUT with line and column: unknown fields, values out of
 // their range, a start that does not stand first.
@@ -73,6 +83,8 @@ ax_status ax_recipe_parse(const char* text, ax_recipe** out, ax_error* error);
 ax_status ax_recipe_read(const char* path, ax_recipe** out, ax_error* error);
 // As text, owned by the caller (ax_free): indented JSON that reads back to the same recipe.
 char* ax_recipe_text(const ax_recipe* recipe);
+// The same to a file, whole or not at all.
+ax_status ax_recipe_write(const ax_recipe* recipe, const char* path, ax_error* error);
 int ax_recipe_count(const ax_recipe* recipe);
 const char* ax_recipe_operator(const ax_recipe* recipe, int k); // JSON text, borrowed
 const ax_operator_type* ax_recipe_type(const ax_recipe* recipe, int k);
@@ -86,6 +98,9 @@ void ax_recipe_remove(ax_recipe* recipe, int k);
 // Applies operator k to *form, then settles if its type says so. On failure *form is as it was.
 ax_status ax_recipe_apply(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress, ax_form** form,
                           ax_error* error);
+// The same, and keeps what an operator that finishes made in *finished.
+ax_status ax_recipe_apply_finished(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress,
+                                   ax_form** form, ax_finished* finished, ax_error* error);
 // The same for an operator that stands in no recipe yet, without settling: a preview while the hand moves.
 ax_status ax_operator_preview(const char* json, const char* folder, ax_form** form, ax_error* error);
 // Plays operators 0 .. until - 1 (until < 0: all) from nothing; `after` (NULL: none) is called after each one and may stop by

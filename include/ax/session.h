@@ -19,19 +19,21 @@ typedef struct ax_session_start {
     int until;
     const char* folder;  // relative names of files in steps are within it; NULL: the folder of the document
     const char* program; // who edits, for others that open the document: "auxshell studio"; NULL: "another program"
-    bool keep;           // when a step other than the first fails, keep the steps before it (see ax_session_failed)
+    void (*played)(void* context, int k, const char* words); // called after step k was applied; NULL: not
+    void* context;
+    bool keep; // when a step other than the first fails, keep the steps before it (see ax_session_failed)
 } ax_session_start;
-ax_status ax_session_create(const char* path, const ax_session_start* start, const ax_progress* progress, ax_session** out,
-                            ax_error* error);
+ax_status ax_session_create(const char* path, const ax_session_start* start, const ax_progress* progress,
+                            ax_session** out, ax_error* error);
 // The same from a finished design: a document without steps, which goes on from it.
-ax_status ax_session_create_from_design(const char* path, const ax_design* design, const char* program, ax_session** out,
-                                        ax_error* error);
+ax_status ax_session_create_from_design(const char* path, const ax_design* design, const char* program,
+                                        ax_session** out, ax_error* error);
 
 // Opens a document. With `edit`, it is locked for other programs until it is closed; where that cannot be (another program edits
 // it, the file or its folder cannot be written), it is opened read-only all the same, and ax_session_read_only says why.
 // AX_BAD_INPUT as ax_document_load. Progress matters only where the present form has to be computed again.
-ax_status ax_session_open(const char* path, bool edit, const char* program, const ax_progress* progress, ax_session** out,
-                          ax_error* error);
+ax_status ax_session_open(const char* path, bool edit, const char* program, const ax_progress* progress,
+                          ax_session** out, ax_error* error);
 void ax_session_close(ax_session* session); // NULL allowed
 
 const char* ax_session_path(const ax_session* session);
@@ -48,7 +50,8 @@ ax_form* ax_session_form(const ax_session* session);
 // Number of the step that failed when steps were played again, and why; -1 if none did.
 int ax_session_failed(const ax_session* session, const char** why);
 // The finished design, if the present state is that of one; *design is NULL if it is not. It may have to be computed again.
-ax_status ax_session_design(ax_session* session, const ax_progress* progress, const ax_design** design, ax_error* error);
+ax_status ax_session_design(ax_session* session, const ax_progress* progress, const ax_design** design,
+                            ax_error* error);
 
 typedef struct ax_moment {
     const char* words; // "Paint: 1.6 within 0.3 m"
@@ -69,7 +72,8 @@ ax_status ax_session_edit(ax_session* session, int k, const char* json, const ax
 // Goes to the state after `at` steps; the others stay ahead.
 ax_status ax_session_go(ax_session* session, int at, const ax_progress* progress, ax_error* error);
 // Puts another recipe in the place of all steps; what both begin with is not computed again. Failing steps as with ax_session_edit.
-ax_status ax_session_replace(ax_session* session, const ax_recipe* recipe, const ax_progress* progress, ax_error* error);
+ax_status ax_session_replace(ax_session* session, const ax_recipe* recipe, const ax_progress* progress,
+                             ax_error* error);
 // Applies the operator `finish`: the exact joint solve and exact deployment. `figures` (NULL: not wanted) says what moved.
 ax_status ax_session_finish(ax_session* session, const ax_progress* progress, ax_finish* figures, ax_error* error);
 

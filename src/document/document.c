@@ -1,5 +1,6 @@
 #include "ax/document.h"
 
+#include "ax/session.h"
 #include "base/file.h"
 #include "document/design_rows.h"
 #include "document/load.h"
@@ -60,6 +61,21 @@ static int present_step(sqlite3* db, sqlite3_int64* step)
     return result;
 }
 
+static ax_status load_unfinished(const char* path, ax_design* design, ax_error* error)
+{
+    ax_session* session;
+    ax_status status = ax_session_open(path, false, NULL, NULL, &session, error);
+    if (status != AX_OK)
+        return status;
+    ax_form* form = ax_session_form(session);
+    if (form)
+        ax_form_snapshot(form, false, design);
+    else
+        status = ax_fail(error, AX_BAD_INPUT, "%s is empty: no operator has started a design in it.", path);
+    ax_session_close(session);
+    return status;
+}
+
 ax_status ax_document_load_as(const ax_schema* schema, const char* path, ax_design* design, ax_error* error)
 {
     *design = (ax_design){0};
@@ -69,16 +85,13 @@ ax_status ax_document_load_as(const ax_schema* schema, const char* path, ax_desi
         return status;
     sqlite3_int64 step;
     int result = present_step(database.view, &step);
+    bool finished = result == SQLITE_OK && ax_design_stored(database.view, step);
     if (result != SQLITE_OK)
         status = ax_fail_reading(path, database.view, result, error);
-    else if (step != 0 && !ax_design_stored(database.view, step))
-        status = ax_fail(error, AX_BAD_INPUT,
-                         "%s has no finished design at this point of its history. Finish it first: auxshell finish %s.",
-                         path, path);
-    else
+    else if (finished)
         status = ax_design_fetch(path, database.view, step, design, error);
     ax_database_close(&database);
-    return status;
+    return status == AX_OK && !finished ? load_unfinished(path, design, error) : status;
 }
 
 ax_status ax_document_load(const char* path, ax_design* design, ax_error* error)

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Forms of 2,500 triangles have 1 MB: these bounds are for larger ones and for long histories.
+// Forms of 2,500 triangles have 2 MB. Those of the last moments may fill more, since undo should not compute.
 enum { most_checkpoints = 64, most_designs = 4, last_moments = 20, stride = 10 };
-static const int64_t most_bytes = (int64_t)256 << 20;
+static const int64_t most_bytes = (int64_t)256 << 20, most_old_bytes = (int64_t)64 << 20;
 
 static char* copy_text(const char* text)
 {
@@ -224,7 +224,8 @@ static int thin(sqlite3* db, const char* list, int now, int most, int (*drop)(sq
     int64_t bytes = 0;
     for (int k = 0; k < count && result == SQLITE_OK; ++k) {
         bytes += all[k].bytes;
-        if (all[k].rank == 3 || (all[k].rank > 0 && (k >= most || bytes > most_bytes)))
+        if (all[k].rank == 3 ||
+            (all[k].rank > 0 && (k >= most || bytes > (all[k].rank == 1 ? most_bytes : most_old_bytes))))
             result = drop(db, all[k].step);
     }
     ax_free(all);

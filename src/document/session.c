@@ -446,8 +446,10 @@ static ax_status read_present(ax_session* s, const ax_progress* progress, ax_err
         return ax_fail(error, status, "%s", inner.message);
     }
     bool computed = a.kept_count && !a.kept[a.kept_count - 1].stored;
-    bool current = s->database.view == s->database.file; // an older document is upgraded by a change, not by a look
-    if (status == AX_OK && computed && current && !s->read_only) // so that it need not be done the next time
+    // What was lost is put back, so that it need not be computed the next time; but opening a document that is only begun, or of an
+    // older version, does not change it.
+    bool current = s->database.view == s->database.file && s->present.at > 0;
+    if (status == AX_OK && computed && current && !s->read_only)
         commit(s, &a, s->present.now, NULL, s->present.failure, NULL);
     if (!s->form) {
         ax_present present = s->present;
@@ -539,6 +541,8 @@ static ax_status play_start(ax_session* s, const ax_session_start* start, const 
             return keep_failing(s, start->recipe, until, inner.message, error);
         if (status != AX_OK && error)
             *error = inner;
+        if (status == AX_OK && start->played)
+            start->played(start->context, k, s->moments[k].words);
     }
     return status;
 }

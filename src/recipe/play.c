@@ -45,11 +45,18 @@ static ax_status apply(const ax_arguments* a, const ax_operator_context* context
 ax_status ax_recipe_apply(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress,
                           ax_form** form, ax_error* error)
 {
+    return ax_recipe_apply_finished(recipe, k, folder, progress, form, NULL, error);
+}
+
+ax_status ax_recipe_apply_finished(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress,
+                                   ax_form** form, ax_finished* finished, ax_error* error)
+{
     ax_arguments arguments;
     ax_error inner = {0};
     ax_status status = read_arguments(ax_recipe_operator(recipe, k), &arguments, &inner);
     if (status == AX_OK) {
-        const ax_operator_context context = {.form = form, .folder = folder, .progress = progress};
+        const ax_operator_context context = {
+            .form = form, .folder = folder, .progress = progress, .finished = finished};
         status = apply(&arguments, &context, &inner);
         ax_arguments_free(&arguments);
     }

@@ -1,5 +1,6 @@
 #include "ax/recipe.h"
 
+#include "base/file.h"
 #include "input/bytes.h"
 #include "recipe/arguments.h"
 #include "recipe/writing.h"
@@ -23,11 +24,19 @@ struct ax_recipe {
     int count, capacity;
     item* items;
     char* note; // of the whole, NULL: none
+    bool based; // goes on from a form: nothing in it starts one
 };
 
 ax_recipe* ax_recipe_make(void)
 {
     return AX_NEW0(ax_recipe, 1);
+}
+
+ax_recipe* ax_recipe_make_based(void)
+{
+    ax_recipe* recipe = ax_recipe_make();
+    recipe->based = true;
+    return recipe;
 }
 
 void ax_recipe_free(ax_recipe* recipe)
@@ -98,9 +107,12 @@ static char* text_of(const json_t* object)
 }
 
 // A place that an operator takes in the recipe: starts stand first and nowhere else.
-static ax_status check_order(const ax_operator_type* type, int k, ax_error* error)
+static ax_status check_order(const ax_recipe* recipe, const ax_operator_type* type, int k, ax_error* error)
 {
-    if (k == 0 && !type->starts)
+    if (recipe->based && type->starts)
+        return ax_fail(error, AX_BAD_INPUT, "%s starts a design, but this one goes on from a finished design.",
+                       type->name);
+    if (k == 0 && !type->starts && !recipe->based)
         return ax_fail(error, AX_BAD_INPUT,
                        "%s needs a design to work on: the first operator must be one that starts a design, such as "
                        "start_circle.",
@@ -111,13 +123,13 @@ static ax_status check_order(const ax_operator_type* type, int k, ax_error* erro
 }
 
 // One operator at place k; `at` is where its message belongs, relative to it.
-static ax_status read_item(json_t* object, int k, item* out, ax_json_path* at, ax_error* error)
+static ax_status read_item(const ax_recipe* recipe, json_t* object, int k, item* out, ax_json_path* at, ax_error* error)
 {
     ax_arguments arguments;
     ax_status status = ax_arguments_read(object, &arguments, at, error);
     if (status != AX_OK)
         return status;
-    status = check_order(arguments.type, k, error);
+    status = check_order(recipe, arguments.type, k, error);
     if (status == AX_OK)
         *out = (item){arguments.type, text_of(object)};
     ax_arguments_free(&arguments);
@@ -146,7 +158,7 @@ static ax_status read_operators(const source* from, int member, const json_t* li
         item it;
         ax_json_path at = {0};
         ax_error inner = {0};
-        if (read_item(json_array_get(list, k), (int)k, &it, &at, &inner) != AX_OK) {
+        if (read_item(recipe, json_array_get(list, k), (int)k, &it, &at, &inner) != AX_OK) {
             path = (ax_json_path){
                 .depth = 2 + at.depth, .steps = {member, (int)k, at.steps[0], at.steps[1]}, .key = at.key};
             return fail_in(from, &path, inner.message, error);
@@ -283,6 +295,18 @@ char* ax_recipe_text(const ax_recipe* recipe)
     return text.bytes;
 }
 
+ax_status ax_recipe_write(const ax_recipe* recipe, const char* path, ax_error* error)
+{
+    ax_file file;
+    ax_status status = ax_file_begin(&file, path, error);
+    if (status != AX_OK)
+        return status;
+    char* text = ax_recipe_text(recipe);
+    fputs(text, file.stream);
+    ax_free(text);
+    return ax_file_commit(&file, error);
+}
+
 // Bytes of a text that fit, whole characters of UTF-8.
 static size_t whole_characters(const char* text, size_t most)
 {
@@ -351,7 +375,7 @@ void ax_recipe_words(const ax_recipe* recipe, int k, char text[160])
 
 // ---- editing -----------------------------------------------------------------------------------------------------------------
 
-static ax_status read_one(const char* json, int k, item* out, ax_error* error)
+static ax_status read_one(const ax_recipe* recipe, const char* json, int k, item* out, ax_error* error)
 {
     const source from = {.text = json};
     json_t* object;
@@ -360,7 +384,7 @@ static ax_status read_one(const char* json, int k, item* out, ax_error* error)
     ax_status status = load_json(&from, &object, error);
     if (status != AX_OK)
         return status;
-    status = read_item(object, k, out, &at, &inner);
+    status = read_item(recipe, object, k, out, &at, &inner);
     json_decref(object);
     return status == AX_OK ? AX_OK : fail_in(&from, &at, inner.message, error);
 }
@@ -371,7 +395,7 @@ ax_status ax_recipe_insert(ax_recipe* recipe, int k, const char* json, ax_error*
     if (recipe->count == MOST_OPERATORS)
         return ax_fail(error, AX_USAGE, "A recipe holds at most %d operators.", MOST_OPERATORS);
     item it;
-    ax_status status = read_one(json, k, &it, error);
+    ax_status status = read_one(recipe, json, k, &it, error);
     if (status != AX_OK)
         return status;
     if (k == 0 && recipe->count && recipe->items[0].type->starts) {
@@ -387,7 +411,7 @@ ax_status ax_recipe_replace(ax_recipe* recipe, int k, const char* json, ax_error
 {
     assert(k >= 0 && k < recipe->count);
     item it;
-    ax_status status = read_one(json, k, &it, error);
+    ax_status status = read_one(recipe, json, k, &it, error);
     if (status != AX_OK)
         return status;
     ax_free(recipe->items[k].json);

@@ -14,12 +14,15 @@ static ax_status apply(const ax_operator_context* context, const void* given, ax
     const arguments* a = given;
     if (context->live)
         return AX_OK;
-    ax_design design = {0};
-    ax_finish finish = {0};
-    ax_status status = ax_form_finish(*context->form, context->progress, &design, &finish, error);
-    ax_design_free(&design);
-    if (status == AX_OK && !finish.exact)
-        status = ax_fail(error, AX_CANNOT_REALISE, "%s", finish.reason);
+    ax_finished made = {0};
+    ax_status status = ax_form_finish(*context->form, context->progress, &made.design, &made.figures, error);
+    made.made = status == AX_OK && made.figures.exact;
+    if (status == AX_OK && !made.figures.exact)
+        status = ax_fail(error, AX_CANNOT_REALISE, "%s", made.figures.reason);
+    if (!made.made || !context->finished)
+        ax_design_free(&made.design);
+    if (context->finished)
+        *context->finished = made;
     return status == AX_CANNOT_REALISE && a->allow_inexact ? AX_OK : status;
 }
 

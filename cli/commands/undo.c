@@ -1,0 +1,41 @@
+// auxshell undo: go back in a document's history.
+#include "options.h"
+#include "walk.h"
+
+static void defaults(void* given)
+{
+    ((walk_arguments*)given)->times = 1;
+}
+
+static const command_option options[] = {
+    {.name = "P.auxshell",
+     .text = "the document",
+     .kind = OPTION_TEXT,
+     .operand = true,
+     .required = true,
+     .offset = offsetof(walk_arguments, document)},
+    {.name = "--times",
+     .value = "N",
+     .text = "changes to undo",
+     .kind = OPTION_INTEGER,
+     .lo = 1,
+     .hi = 1000000,
+     .offset = offsetof(walk_arguments, times)},
+};
+
+static ax_status run(const void* given, ax_error* error)
+{
+    return walk(given, "auxshell undo", ax_session_undo, error);
+}
+
+const command command_undo = {
+    .name = "undo",
+    .summary = "go back in a document's history",
+    .text = "Goes back in a document's history by one change, or by several. What was undone can be redone, also after "
+            "the document was closed, until something else is changed.",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .size = sizeof(walk_arguments),
+    .defaults = defaults,
+    .run = run,
+};
