@@ -95,15 +95,27 @@ static ax_status create(const arguments* a, const ax_recipe* recipe, ax_session*
     return ax_session_create(a->out, &start, progress_reporter(), session, error);
 }
 
+// How many operators are as they were when they were played last.
+static int unchanged(const ax_recipe* recipe, const ax_session* session)
+{
+    const ax_recipe* old = ax_session_recipe(session);
+    int k = 0;
+    while (k < ax_recipe_count(recipe) && k < ax_session_at(session) &&
+           strcmp(ax_recipe_operator(recipe, k), ax_recipe_operator(old, k)) == 0)
+        ++k;
+    return k;
+}
+
 // The document goes on from what the recipes have in common, as one change that can be undone.
 static ax_status replace(const arguments* a, ax_recipe* recipe, ax_session* session, ax_error* error)
 {
     const char* why;
     for (int k = ax_recipe_count(recipe); k > steps_asked(a, recipe); --k)
         ax_recipe_remove(recipe, k - 1);
+    int first = unchanged(recipe, session);
     ax_status status = ax_session_replace(session, recipe, progress_reporter(), error);
     progress_end();
-    for (int k = 0; k < ax_session_at(session) && status == AX_OK; ++k) {
+    for (int k = first; k < ax_session_at(session) && status == AX_OK; ++k) {
         char words[160];
         ax_recipe_words(recipe, k, words);
         print_step(NULL, k, words);
