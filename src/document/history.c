@@ -145,8 +145,8 @@ int ax_history_add_step(sqlite3* db, int64_t parent, const char* json, int64_t* 
 static int drop_unreachable(sqlite3* db)
 {
     static const char* const statements[] = {
-        "DELETE FROM step WHERE id NOT IN (WITH RECURSIVE live(id) AS (SELECT tip FROM moment UNION"
-        " SELECT parent FROM step JOIN live USING(id)) SELECT id FROM live)",
+        ("DELETE FROM step WHERE id NOT IN (WITH RECURSIVE live(id) AS (SELECT tip FROM moment UNION"
+         " SELECT parent FROM step JOIN live USING(id)) SELECT id FROM live)"),
         "DELETE FROM checkpoint WHERE step <> 0 AND step NOT IN (SELECT id FROM step)",
         "DELETE FROM property WHERE design <> 0 AND design NOT IN (SELECT id FROM step)",
         "DELETE FROM array WHERE design <> 0 AND design NOT IN (SELECT id FROM step)",
