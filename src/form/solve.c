@@ -30,15 +30,16 @@ void ax_form_drop_solvers(ax_form* f)
     ax_free(f->hang_groups.rim);
     ax_free(f->hang_groups.held);
     f->shape_groups = f->hang_groups = (ax_form_groups){0};
-    for (int k = 0; k < f->rim_count && f->rim_holder; ++k)
+    for (int k = 0; k < f->rim_holders; ++k)
         ax_curve_free(f->rim_holder[k].curve);
-    for (int k = 0; k < f->held_count && f->held_holder; ++k) {
+    for (int k = 0; k < f->held_holders; ++k) {
         ax_curve_free(f->held_holder[k].curve);
         ax_closest_free(f->held_holder[k].surface);
     }
     ax_free(f->rim_holder);
     ax_free(f->held_holder);
     f->rim_holder = f->held_holder = NULL;
+    f->rim_holders = f->held_holders = 0;
     f->stale = true;
 }
 
@@ -307,8 +308,10 @@ void ax_form_build(ax_form* f)
     if (!f->stale)
         return;
     ax_form_drop_solvers(f);
-    f->rim_holder = AX_NEW0(ax_holder, f->rim_count + 1);
-    f->held_holder = AX_NEW0(ax_holder, f->held_count + 1);
+    f->rim_holders = f->rim_count;
+    f->held_holders = f->held_count;
+    f->rim_holder = AX_NEW0(ax_holder, f->rim_holders + 1);
+    f->held_holder = AX_NEW0(ax_holder, f->held_holders + 1);
     for (int k = 0; k < f->rim_count; ++k)
         if (f->rim[k].kind == AX_RIM_SLIDE) {
             f->rim_holder[k].curve = ax_curve_of_shape(&f->rim[k].curve);

@@ -71,6 +71,7 @@ struct ax_form {
     ax_form_groups shape_groups, hang_groups;
     int load; // of the hanging solver
     ax_holder *rim_holder, *held_holder;
+    int rim_holders, held_holders; // of when they were made: rim and constraints may have changed since
     bool stale; // the solvers no longer fit what is asked
     double* pending; // multipliers that were loaded and go into the next solvers: shape, then hang; NULL: none
     size_t pending_count;
