@@ -18,3 +18,7 @@ ax_status ax_page_close(cairo_surface_t* surface, const char* path, ax_error* er
 
 // Draws the lines of a sheet in the colours of the plan's profile; the user space is millimetres, y up.
 void ax_page_draw(cairo_t* cairo, const ax_cut_plan* plan, const ax_cut_sheet* sheet);
+
+// The sheets at true size over pages that overlap, with marks for gluing; those on which nothing would show may be left out.
+ax_status ax_page_tiles(const ax_cut_plan* plan, const double page_size[2], bool leave_out_empty, const char* path,
+                        ax_error* error);

@@ -1,0 +1,362 @@
+// Pages, words, tables and panels of the assembly plan, and its title page.
+#include "export/booklet.h"
+
+#include "base/vec.h"
+#include "export/page.h"
+
+#include <cairo-pdf.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double width = AX_BOOKLET_WIDTH, height = AX_BOOKLET_HEIGHT, margin = AX_BOOKLET_MARGIN;
+static const double row_height = 4.6, table_size = 3; // mm
+
+ax_box ax_booklet_body(void)
+{
+    return (ax_box){margin, AX_BOOKLET_TOP, width - 2 * margin, height - AX_BOOKLET_TOP - margin - 3};
+}
+
+void ax_booklet_ink(ax_booklet* b, double grey)
+{
+    cairo_set_source_rgb(b->cairo, grey, grey, grey);
+}
+
+double ax_booklet_text_width(ax_booklet* b, double size, const char* text)
+{
+    cairo_text_extents_t e;
+    cairo_set_font_size(b->cairo, size);
+    cairo_text_extents(b->cairo, text, &e);
+    return e.x_advance;
+}
+
+double ax_booklet_text(ax_booklet* b, double x, double y, double size, ax_align align, const char* text)
+{
+    double wide = ax_booklet_text_width(b, size, text);
+    cairo_move_to(b->cairo, x - (align == AX_CENTRE ? wide / 2 : align == AX_RIGHT ? wide : 0), y);
+    cairo_show_text(b->cairo, text);
+    return wide;
+}
+
+static void choose_font(ax_booklet* b, bool bold)
+{
+    cairo_select_font_face(b->cairo, "Inter", CAIRO_FONT_SLANT_NORMAL,
+                           bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+}
+
+void ax_booklet_page(ax_booklet* b, const char* section, const char* heading, const char* line)
+{
+    char foot[64];
+    cairo_save(b->cairo);
+    cairo_scale(b->cairo, ax_page_points(1), ax_page_points(1));
+    ++b->page;
+    if (section)
+        cairo_pdf_surface_add_outline(b->surface, CAIRO_PDF_OUTLINE_ROOT, section, "", CAIRO_PDF_OUTLINE_FLAG_OPEN);
+    ax_booklet_ink(b, 0);
+    choose_font(b, true);
+    ax_booklet_text(b, margin, 19, 6, AX_LEFT, heading);
+    choose_font(b, false);
+    ax_booklet_ink(b, 0.3);
+    ax_booklet_text(b, margin, 25.5, 3.2, AX_LEFT, line);
+    snprintf(foot, sizeof foot, "page %d", b->page);
+    ax_booklet_text(b, margin, height - 9, 2.8, AX_LEFT, b->plan->title);
+    ax_booklet_text(b, width / 2, height - 9, 2.8, AX_CENTRE, b->plan->date);
+    ax_booklet_text(b, width - margin, height - 9, 2.8, AX_RIGHT, foot);
+    ax_booklet_ink(b, 0);
+}
+
+void ax_booklet_end_page(ax_booklet* b)
+{
+    cairo_restore(b->cairo);
+    cairo_show_page(b->cairo);
+}
+
+// --- tables
+
+static void put_cells(ax_table* t, const char* const* cells, bool bold)
+{
+    double x = t->x;
+    choose_font(t->b, bold);
+    for (int k = 0; k < t->columns; ++k) {
+        if (k == 0)
+            ax_booklet_text(t->b, x, t->y, table_size, AX_LEFT, cells[k]);
+        x += t->widths[k];
+        if (k > 0)
+            ax_booklet_text(t->b, x - 2, t->y, table_size, AX_RIGHT, cells[k]);
+    }
+    choose_font(t->b, false);
+    t->y += row_height;
+}
+
+void ax_table_row(ax_table* t, const char* const* cells)
+{
+    double wide = 0;
+    for (int k = 0; k < t->columns; ++k)
+        wide += t->widths[k];
+    bool full = t->open && t->y > t->box.y + t->box.height;
+    if (full) {
+        t->x += wide + 6;
+        t->y = t->box.y;
+    }
+    if (full && t->x + wide > t->box.x + t->box.width) {
+        ax_booklet_end_page(t->b);
+        ax_booklet_page(t->b, NULL, t->heading, t->line);
+        t->box = ax_booklet_body();
+    }
+    if (!t->open || full) {
+        if (!t->open || t->x + wide > t->box.x + t->box.width)
+            t->x = t->box.x, t->y = t->box.y;
+        t->open = true;
+        t->y += table_size;
+        put_cells(t, t->titles, true);
+    }
+    put_cells(t, cells, false);
+}
+
+// --- panels
+
+void ax_booklet_dot(ax_booklet* b, const double at[2], double radius)
+{
+    cairo_new_path(b->cairo); // words leave a point, from which the arc would draw a line
+    cairo_arc(b->cairo, at[0], at[1], radius, 0, 2 * AX_PI);
+    cairo_fill(b->cairo);
+}
+
+double ax_booklet_name_size(const double corners[3][2], int letters)
+{
+    double around = 0, twice = fabs(ax_orient2(corners[0], corners[1], corners[2]));
+    for (int k = 0; k < 3; ++k)
+        around += ax_distance2(corners[k], corners[(k + 1) % 3]);
+    double inscribed = around > 0 ? twice / around : 0;
+    return inscribed / hypot(0.31 * letters, 0.36); // halves of a letter's advance and of its height, in sizes
+}
+
+void ax_booklet_panel(ax_booklet* b, int panel, const double corners[3][2], ax_panel_style style)
+{
+    static const double tints[][3] = {{0.80, 0.88, 0.95}, {0.98, 0.90, 0.76}, {0.85, 0.93, 0.82},
+                                      {0.93, 0.84, 0.93}, {0.98, 0.96, 0.72}, {0.86, 0.86, 0.86}};
+    enum { TINTS = sizeof tints / sizeof *tints };
+    const ax_cut_panel* p = &b->plan->panels[panel];
+    const double* tint = tints[b->assembly.by_pieces ? b->assembly.step_of[panel] % TINTS : ((p->row % 3) + 3) % 3];
+    bool faded = style == AX_PANEL_THERE || style == AX_PANEL_BACK;
+    double shade = p->layer ? 0.86 : 1, pale = faded ? 0.6 : 0;
+    cairo_t* c = b->cairo;
+    cairo_move_to(c, corners[0][0], corners[0][1]);
+    cairo_line_to(c, corners[1][0], corners[1][1]);
+    cairo_line_to(c, corners[2][0], corners[2][1]);
+    cairo_close_path(c);
+    cairo_set_source_rgb(c, shade * tint[0] * (1 - pale) + pale, shade * tint[1] * (1 - pale) + pale,
+                         shade * tint[2] * (1 - pale) + pale);
+    cairo_fill_preserve(c);
+    ax_booklet_ink(b, faded ? 0.75 : 0.25);
+    cairo_set_line_width(c, 0.1);
+    cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+    cairo_stroke(c);
+    double size = ax_booklet_name_size(corners, (int)strlen(p->name));
+    if (style == AX_PANEL_ALWAYS_NAMED)
+        size = fmax(size, AX_BOOKLET_LEGIBLE + 0.01);
+    size = fmin(4, floor(10 * size) / 10); // a few sizes only: cairo makes a font of each
+    if (style == AX_PANEL_PLAIN || style == AX_PANEL_BACK || size < AX_BOOKLET_LEGIBLE)
+        return;
+    // in the middle of the inscribed circle
+    double weight[3], sum = 0, at[2] = {0, 0};
+    for (int k = 0; k < 3; ++k)
+        sum += weight[k] = ax_distance2(corners[(k + 1) % 3], corners[(k + 2) % 3]);
+    for (int k = 0; k < 3; ++k)
+        for (int d = 0; d < 2; ++d)
+            at[d] += weight[k] / sum * corners[k][d];
+    ax_booklet_ink(b, faded ? 0.5 : 0);
+    ax_booklet_text(b, at[0], at[1] + 0.36 * size, size, AX_CENTRE, p->name);
+    ax_booklet_ink(b, 0);
+}
+
+static int ascending(const void* a, const void* b)
+{
+    double x = *(const double*)a, y = *(const double*)b;
+    return (x > y) - (x < y);
+}
+
+void ax_booklet_flat(const ax_booklet* b, int hinge, double scale, double out[2])
+{
+    const double *p = b->design->flat[hinge], *u = b->assembly.along, s = scale * b->mm;
+    out[0] = s * (u[0] * p[0] + u[1] * p[1]);
+    out[1] = -s * (u[0] * p[1] - u[1] * p[0]);
+}
+
+double ax_booklet_naming_scale(const ax_booklet* b, double size)
+{
+    int n = b->plan->panel_count;
+    double* sizes = AX_NEW(double, n);
+    for (int t = 0; t < n; ++t) {
+        double corners[3][2];
+        for (int k = 0; k < 3; ++k)
+            ax_booklet_flat(b, b->design->linkage.triangles[t][k], 1, corners[k]);
+        sizes[t] = ax_booklet_name_size((const double(*)[2])corners, (int)strlen(b->plan->panels[t].name));
+    }
+    qsort(sizes, (size_t)n, sizeof *sizes, ascending);
+    double tenth = sizes[n / 10];
+    ax_free(sizes);
+    return size / tenth;
+}
+
+double ax_booklet_scale(const ax_box* box, double wide, double high, char text[32])
+{
+    static const double steps[] = {1, 1.5, 2, 2.5, 3, 4, 5, 6, 7.5};
+    enum { STEPS = sizeof steps / sizeof *steps };
+    double needed = fmax(fmax(wide / box->width, high / box->height), 1e-3);
+    double decade = pow(10, floor(log10(needed)));
+    double n = 10 * decade;
+    for (int k = STEPS - 1; k >= 0; --k)
+        if (steps[k] * decade >= needed * (1 - 1e-12))
+            n = steps[k] * decade;
+    if (n >= 1)
+        snprintf(text, 32, "1 : %g", n);
+    else
+        snprintf(text, 32, "%g : 1", 1 / n);
+    return 1 / n;
+}
+
+// --- the title page
+
+typedef struct listing {
+    ax_booklet* b;
+    double x, y;
+} listing;
+
+static void say(listing* l, const char* label, const char* format, ...) __attribute__((format(printf, 3, 4)));
+static void say(listing* l, const char* label, const char* format, ...)
+{
+    char text[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    ax_booklet_ink(l->b, 0.4);
+    ax_booklet_text(l->b, l->x, l->y, 3.6, AX_LEFT, label);
+    ax_booklet_ink(l->b, 0);
+    ax_booklet_text(l->b, l->x + 38, l->y, 3.6, AX_LEFT, text);
+    l->y += 6.4;
+}
+
+static void write_force(char text[32], double newton)
+{
+    if (newton >= 1e4)
+        snprintf(text, 32, "%.1f kN", newton / 1000);
+    else
+        snprintf(text, 32, newton >= 100 ? "%.0f N" : "%.3g N", newton);
+}
+
+static void say_load(listing* l)
+{
+    const ax_design* d = l->b->design;
+    if (d->load.kind == AX_LOAD_GRAVITY)
+        say(l, "Load", "gravity, %.3g kg/m2, towards (%.3g, %.3g, %.3g)", d->load.density, d->load.direction[0],
+            d->load.direction[1], d->load.direction[2]);
+    else if (d->load.kind == AX_LOAD_INFLATION)
+        say(l, "Load", "inflation, %.4g Pa", d->load.pressure);
+    else
+        say(l, "Load", "none given");
+    if (d->simulated) {
+        char all[32], supports[32], hinge[32];
+        write_force(all, d->report.load_total);
+        write_force(supports, d->report.reaction_total);
+        write_force(hinge, d->report.hinge_force_max);
+        say(l, "", "%s in all, %s on the supports", all, supports);
+        say(l, "Hinge force", "%s at most", hinge);
+    } else {
+        say(l, "", "not simulated: forces are unknown");
+    }
+}
+
+static void say_frame(listing* l)
+{
+    const ax_support_frame* f = &l->b->frame;
+    int sliding = 0;
+    for (int k = 0; k < f->point_count; ++k)
+        sliding += f->points[k].slides;
+    if (sliding)
+        say(l, "Supports", "%d, of which %d slide", f->point_count, sliding);
+    else
+        say(l, "Supports", "%d", f->point_count);
+    for (int k = 0, told = 0; k < f->curve_count && told < 4; ++k) {
+        const ax_frame_curve* c = &f->curves[k];
+        if (c->count < 2)
+            continue;
+        ++told;
+        if (c->circle)
+            say(l, "Frame", "circle of radius %.1f mm, %d supports", c->radius, c->count);
+        else
+            say(l, "Frame", "%s curve, %.3f m, %d supports", c->planar ? "plane" : "spatial", c->length / 1000,
+                c->count);
+    }
+}
+
+static void extents(const ax_design* d, double flat[2], double space[3])
+{
+    for (int c = 0; c < 3; ++c) {
+        double lo = INFINITY, hi = -INFINITY, l = INFINITY, h = -INFINITY;
+        for (int k = 0; k < d->linkage.hinge_count; ++k) {
+            lo = fmin(lo, d->deployed[k][c]), hi = fmax(hi, d->deployed[k][c]);
+            if (c < 2)
+                l = fmin(l, d->flat[k][c]), h = fmax(h, d->flat[k][c]);
+        }
+        space[c] = hi - lo;
+        if (c < 2)
+            flat[c] = h - l;
+    }
+}
+
+static void say_joint(listing* l)
+{
+    const ax_cut_plan* p = l->b->plan;
+    char text[200];
+    int used = snprintf(text, sizeof text, "%s", p->joint->name);
+    for (int k = 0; k < p->joint->parameter_count && used < (int)sizeof text; ++k)
+        used += snprintf(text + used, sizeof text - (size_t)used, "%s %s %g %s", k ? "," : ":",
+                         p->joint->parameters[k].name, p->joint_values[k], p->joint->parameters[k].unit);
+    say(l, "Joint", "%s", text);
+    for (int k = 0; k < p->part_count; ++k)
+        say(l, "Parts", "%d x %s", p->parts[k].count, p->parts[k].name);
+}
+
+void ax_booklet_title(ax_booklet* b)
+{
+    const ax_cut_plan* p = b->plan;
+    const ax_design* d = b->design;
+    double flat[2], space[3], metre = ax_unit_in_metres(d->unit);
+    char heading[160], scale[32];
+    snprintf(heading, sizeof heading, "%s%sassembly plan", p->title, *p->title ? ": " : "");
+    ax_booklet_page(b, "Overview", heading,
+                    "Panels keep their names in the cut files, in the schedule and on these pages.");
+    listing l = {b, margin, AX_BOOKLET_TOP + 8};
+    extents(d, flat, space);
+    say(&l, "Panels", "%d", p->panel_count);
+    say(&l, "Hinges", "%d between panels", p->hinge_count);
+    if (p->seam_count)
+        say(&l, "Seams", "%d hinges to close between pieces", p->seam_count);
+    say_joint(&l);
+    say(&l, "Material", "%s, %g mm thick", p->material.name, p->material.thickness);
+    say(&l, "Panels weigh", "%.3f kg (%.4g m2)", p->mass, p->area * 1e-6);
+    if (p->sheet_count == 1)
+        say(&l, "Sheets", "1 of %.0f x %.0f mm", p->sheets[0].width, p->sheets[0].height);
+    else
+        say(&l, "Sheets", "%d of %.0f x %.0f mm, %.0f %% used", p->sheet_count, p->sheets[0].width, p->sheets[0].height,
+            100 * p->utilisation);
+    say(&l, "Flat", "%.3f x %.3f m", flat[0] * metre, flat[1] * metre);
+    say(&l, "Deployed", "%.3f x %.3f x %.3f m", space[0] * metre, space[1] * metre, space[2] * metre);
+    say_load(&l);
+    say_frame(&l);
+    say(&l, "Steps", b->assembly.by_pieces ? "%d, by pieces" : "%d, by rows", b->assembly.step_count);
+    if (p->clashes_found)
+        say(&l, "Attention", "%d pairs of panels collide; see the report of the export", p->clashes_found);
+    if (d->load.kind == AX_LOAD_GRAVITY && d->load.direction[2] > 0) {
+        l.y += 4;
+        ax_booklet_text(b, l.x, l.y, 3.2, AX_LEFT,
+                        "On these pages the load points up: the shell finds this shape as it hangs");
+        ax_booklet_text(b, l.x, l.y + 4.6, 3.2, AX_LEFT, "from its frame, upside down.");
+    }
+    ax_box box = {margin + 150, AX_BOOKLET_TOP, width - 2 * margin - 150, ax_booklet_body().height};
+    ax_booklet_draw_view(b, AX_VIEW_AXONOMETRIC, &box, false, scale);
+    ax_booklet_end_page(b);
+}
