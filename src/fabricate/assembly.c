@@ -100,7 +100,7 @@ static void list_units(work* w, const double along[2])
     placed_panel* sorted = AX_NEW(placed_panel, n);
     for (int t = 0; t < n; ++t) {
         const int* p = w->design->linkage.panels[t];
-        sorted[t] = (placed_panel){w->unit_of[t], p[1], 2 * p[0] + p[2], t};
+        sorted[t] = (placed_panel){w->unit_of[t], w->plan->panels[t].row, 2 * p[0] + p[2], t};
     }
     qsort(sorted, (size_t)n, sizeof *sorted, by_place);
     w->units = AX_NEW0(unit, w->unit_count);
