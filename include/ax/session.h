@@ -47,6 +47,8 @@ int ax_session_at(const ax_session* session);
 bool ax_session_from_design(const ax_session* session);
 // The form after step at - 1, settled; NULL if the document is empty. Not to be changed: previews work on a copy (ax_form_save).
 ax_form* ax_session_form(const ax_session* session);
+// From the progress of a call that plays steps: the form as far as it is made; NULL in between and otherwise. For showing only.
+ax_form* ax_session_making(const ax_session* session);
 // Number of the step that failed when steps were played again, and why; -1 if none did.
 int ax_session_failed(const ax_session* session, const char** why);
 // The finished design, if the present state is that of one; *design is NULL if it is not. It may have to be computed again.

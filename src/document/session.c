@@ -30,8 +30,9 @@ struct ax_session {
     ax_present present;
     ax_moment* moments;
     int moment_count;
-    ax_form* form; // after step present.state
-    void* bytes;   // the same, stored
+    ax_form* form;          // after step present.state
+    ax_form* const* making; // that of the attempt that is being played
+    void* bytes;            // the same, stored
     size_t size;
     ax_design design; // of step `designed`; -1: none is loaded
     int64_t designed;
@@ -210,6 +211,7 @@ static ax_status play(ax_session* s, int until, const ax_progress* progress, att
     *a = (attempt){0};
     ax_status status = find_start(s, until, a, error);
     int first = a->at;
+    s->making = &a->form;
     while (a->at < until && status == AX_OK) {
         ax_progress_part slot;
         double lo = (double)(a->at - first) / (until - first), hi = (double)(a->at + 1 - first) / (until - first);
@@ -223,6 +225,7 @@ static ax_status play(ax_session* s, int until, const ax_progress* progress, att
         if (a->at % stride == 0)
             keep_form(a);
     }
+    s->making = NULL;
     keep_form(a);
     return status;
 }
@@ -668,6 +671,11 @@ bool ax_session_from_design(const ax_session* s)
 ax_form* ax_session_form(const ax_session* s)
 {
     return s->form;
+}
+
+ax_form* ax_session_making(const ax_session* s)
+{
+    return s->making ? *s->making : NULL;
 }
 
 int ax_session_failed(const ax_session* s, const char** why)

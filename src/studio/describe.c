@@ -1,6 +1,5 @@
 #include "studio/describe.h"
 
-#include "ax/export.h"
 #include "base/vec.h"
 
 #include <stdio.h>
@@ -113,35 +112,56 @@ static json_t* underlays(const ax_form* form)
     return list;
 }
 
-static json_t* steps(const session* s)
+// Selections have names in steps only, so steps are asked for them.
+static json_t* selections(const ax_session* s)
 {
-    const ax_recipe* recipe = session_recipe(s);
-    const ax_error* error = NULL;
-    int failed = session_failed(s, &error);
+    json_t* list = json_array();
+    for (int k = 0; k < ax_session_at(s); ++k) {
+        if (strcmp(ax_recipe_type(ax_session_recipe(s), k)->group, "selection") != 0)
+            continue;
+        json_t* step = json_loads(ax_recipe_operator(ax_session_recipe(s), k), 0, NULL);
+        const char* name = json_string_value(json_object_get(step, "name"));
+        int count;
+        const int* hinges = name ? ax_form_selection(ax_session_form(s), name, &count) : NULL;
+        if (hinges)
+            json_array_append_new(list, json_pack("{s:s, s:o}", "name", name, "hinges", integers(hinges, count)));
+        json_decref(step);
+    }
+    return list;
+}
+
+static json_t* steps(const ax_session* s)
+{
+    const ax_recipe* recipe = ax_session_recipe(s);
+    const char* why = NULL;
+    int failed = ax_session_failed(s, &why);
     json_t* list = json_array();
     for (int k = 0; k < ax_recipe_count(recipe); ++k) {
         char words[160];
         ax_recipe_words(recipe, k, words);
-        const char* state = k < session_at(s) ? "applied" : k == failed ? "failed" : "ahead";
+        const char* state = k < ax_session_at(s) ? "applied" : k == failed ? "failed" : "ahead";
         json_t* row = json_pack("{s:o, s:s, s:s, s:s}", "operator", json_loads(ax_recipe_operator(recipe, k), 0, NULL),
                                 "words", words, "type", ax_recipe_type(recipe, k)->name, "state", state);
         if (k == failed)
-            json_object_set_new(row, "problem", json_string(error->message));
+            json_object_set_new(row, "problem", json_string(why));
         json_array_append_new(list, row);
     }
     return list;
 }
 
-json_t* describe_document(const describe_names* names, const session* s, const ax_form_report* report)
+json_t* describe_document(const describe_names* names, const ax_session* s, const ax_form_report* report)
 {
-    ax_form* form = session_form(s);
+    ax_form* form = ax_session_form(s);
     ax_form_view view = ax_form_look(form);
     const ax_load* load = &ax_form_get_dynamics(form)->load;
-    json_t* document =
-        json_pack("{s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:o, s:o, s:o}", "event", "document", "id", names->id, "name",
-                  names->name, "path", text_or_null(names->path), "read_only", text_or_null(names->read_only), "unit",
-                  ax_unit_name(view.unit), "at", session_at(s), "steps", steps(s), "undo",
-                  text_or_null(session_undo_words(s)), "redo", text_or_null(session_redo_words(s)));
+    const ax_moment* moments;
+    int now, count = ax_session_history(s, &moments, &now);
+    json_t* document = json_pack(
+        "{s:s, s:s, s:s, s:o, s:o, s:o, s:s, s:i, s:o, s:o, s:o, s:o}", "event", "document", "id", names->id, "name",
+        names->name, "path", text_or_null(names->path), "read_only", text_or_null(ax_session_read_only(s)), "autosaved",
+        describe_number(moments[now].time), "unit", ax_unit_name(view.unit), "at", ax_session_at(s), "steps", steps(s),
+        "undo", text_or_null(now > 0 ? moments[now].words : NULL), "redo",
+        text_or_null(now + 1 < count ? moments[now + 1].words : NULL), "selections", selections(s));
     json_object_set_new(document, "constraints", constraints(form, report));
     json_object_set_new(document, "rim", rim_parts(form, report));
     json_object_set_new(document, "underlays", underlays(form));
@@ -510,4 +530,59 @@ json_t* describe_exporters(void)
                                         t->doc, "states", states, "default_state", ax_state_name(t->default_state)));
     }
     return list;
+}
+
+static json_t* named(const char* name, const char* doc)
+{
+    return json_pack("{s:s, s:s}", "name", name, "doc", doc ? doc : "");
+}
+
+json_t* describe_making(void)
+{
+    int count;
+    json_t *joints = json_array(), *materials = json_array(), *sheets = json_array(), *profiles = json_array();
+    const ax_joint_type* const* joint = ax_joint_types(&count);
+    for (int k = 0; k < count; ++k) {
+        json_t *row = named(joint[k]->name, joint[k]->doc), *parameters = json_array();
+        for (int i = 0; i < joint[k]->parameter_count; ++i) {
+            const ax_joint_parameter* p = &joint[k]->parameters[i];
+            json_array_append_new(parameters,
+                                  json_pack("{s:s, s:s, s:s, s:o, s:o, s:o}", "name", p->name, "unit", p->unit, "doc",
+                                            p->doc, "lo", describe_number(p->least), "hi", describe_number(p->most),
+                                            "default", describe_number(p->standard)));
+        }
+        json_object_set_new(row, "parameters", parameters);
+        json_array_append_new(joints, row);
+    }
+    const ax_material* material = ax_materials(&count);
+    for (int k = 0; k < count; ++k) {
+        json_t* row = named(material[k].name, material[k].doc);
+        json_object_set_new(row, "thickness", describe_number(material[k].thickness));
+        json_object_set_new(row, "kerf", describe_number(material[k].kerf));
+        json_array_append_new(materials, row);
+    }
+    const ax_sheet_size* size = ax_sheet_sizes(&count);
+    for (int k = 0; k < count; ++k)
+        json_array_append_new(sheets,
+                              json_pack("{s:s, s:o, s:o}", "name", size[k].name, "width",
+                                        describe_number(size[k].width), "height", describe_number(size[k].height)));
+    const ax_profile* profile = ax_profiles(&count);
+    for (int k = 0; k < count; ++k)
+        json_array_append_new(profiles, named(profile[k].name, profile[k].doc));
+    return json_pack("{s:o, s:o, s:o, s:o}", "joints", joints, "materials", materials, "sheets", sheets, "profiles",
+                     profiles);
+}
+
+json_t* describe_plan(const ax_cut_plan* p)
+{
+    if (!p->sheet_count)
+        return json_null();
+    double cut = p->cut_length[AX_HOLE] + p->cut_length[AX_SLIT] + p->cut_length[AX_CUT];
+    json_t* parts = json_array();
+    for (int k = 0; k < p->part_count; ++k)
+        json_array_append_new(parts, json_pack("{s:s, s:i}", "name", p->parts[k].name, "count", p->parts[k].count));
+    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:i, s:i, s:o}", "sheets", p->sheet_count, "cut_length",
+                     describe_number(1e-3 * cut), "seconds", describe_number(p->seconds), "mass",
+                     describe_number(p->mass), "utilisation", describe_number(p->utilisation), "clashes",
+                     p->clashes_found, "seams", p->seam_count, "parts", parts);
 }

@@ -169,12 +169,15 @@ static void post(desk* d, slot s, json_t* event)
 
 ax_form* desk_form(const desk* d)
 {
-    return d->live_shown ? d->live : d->session ? session_form(d->session) : NULL;
+    if (d->live_shown || !d->session)
+        return d->live_shown ? d->live : NULL;
+    ax_form* making = ax_session_making(d->session);
+    return making ? making : ax_session_form(d->session);
 }
 
 static const ax_design* shown_exact(const desk* d)
 {
-    return d->live_shown || d->busy ? NULL : session_exact(d->session);
+    return d->live_shown || d->busy ? NULL : d->exact;
 }
 
 static bool same_linkage(const board* b, const ax_linkage* l)
@@ -299,6 +302,16 @@ static double show_moving(desk* d)
     return move;
 }
 
+// The finished design, if the state is that of one.
+static void find_exact(desk* d)
+{
+    const ax_progress progress = desk_progress(d);
+    if (d->exact || ax_session_design(d->session, &progress, &d->exact, NULL) != AX_OK)
+        return;
+    if (d->exact)
+        d->was_exact = false;
+}
+
 static void show_rest(desk* d)
 {
     publish(d, true);
@@ -311,7 +324,7 @@ static void show_document(desk* d)
 {
     ax_form_report* r = &d->report;
     const describe_names names = {
-        .id = d->id, .name = d->name, .path = d->path ? files_relative(hub_files(d->hub), d->path) : NULL};
+        .id = d->id, .name = d->name, .path = d->draft ? NULL : files_relative(hub_files(d->hub), d->path)};
     post(d, SLOT_DOCUMENT, describe_document(&names, d->session, r));
     post(d, SLOT_VARIANTS, job_variants(d));
 }
@@ -368,7 +381,7 @@ static bool begin_live(desk* d)
         size_t size;
         ax_form_free(d->live);
         d->live = NULL;
-        void* bytes = ax_form_save(session_form(d->session), &size);
+        void* bytes = ax_form_save(ax_session_form(d->session), &size);
         ax_status status = ax_form_load(bytes, size, &d->live, NULL);
         ax_free(bytes);
         if (status != AX_OK)
@@ -413,7 +426,8 @@ void desk_begin_edit(desk* d)
 {
     desk_end_live(d);
     d->live_fresh = false;
-    d->was_exact |= session_exact(d->session) != NULL;
+    d->was_exact |= d->exact != NULL;
+    d->exact = NULL;
 }
 
 static void start_moving(desk* d)
@@ -559,8 +573,12 @@ static void run_job(desk* d, job* j)
 {
     ax_error error = {0};
     json_t* result = NULL;
-    begin_work(d, job_find(j->message.action)->name, j->message.id);
-    ax_status status = job_find(j->message.action)->run(d, j, &result, &error);
+    const job_type* type = job_find(j->message.action);
+    begin_work(d, type->name, j->message.id);
+    ax_status status = type->plain ? message_unpack(&j->message, &error, "{}") : AX_OK;
+    if (status == AX_OK)
+        status = type->run(d, j, &result, &error);
+    find_exact(d);
     end_work(d);
     if (!d->moving && !d->rested)
         show_rest(d);
@@ -574,6 +592,22 @@ static void run_job(desk* d, job* j)
     free_job(j);
 }
 
+void desk_rename(desk* d, const char* id)
+{
+    json_t* event = d->linkage ? json_loads(d->linkage, 0, NULL) : NULL;
+    json_object_set_new(event, "document", json_string(id));
+    hub_lock(d->hub);
+    hub_renamed(d->hub, d->id, id);
+    free(d->id);
+    d->id = strdup(id);
+    if (event) {
+        free(d->linkage);
+        d->linkage = json_dumps(event, JSON_COMPACT);
+    }
+    hub_unlock(d->hub);
+    json_decref(event);
+}
+
 ax_progress desk_progress(desk* d)
 {
     return (ax_progress){.report = report_progress, .context = d};
@@ -583,8 +617,7 @@ static void end_desk(desk* d)
 {
     ax_form_free(d->live);
     d->live = NULL;
-    session_close(d->session);
-    d->session = NULL;
+    job_close(d, d->discard);
     desk_free_variants(d);
 }
 
@@ -666,6 +699,8 @@ static void* work(void* context)
     ax_error error = {0};
     begin_work(d, "open", d->opener_re);
     ax_status status = job_open(d, &error);
+    if (status == AX_OK)
+        find_exact(d);
     end_work(d);
     if (status == AX_OK) {
         show_rest(d);
@@ -727,9 +762,10 @@ ax_status desk_wait(desk* d, ax_error* error)
     return status;
 }
 
-void desk_close(desk* d)
+void desk_close(desk* d, bool discard)
 {
     hub_lock(d->hub);
+    d->discard = discard;
     __atomic_store_n(&d->closing, true, __ATOMIC_RELAXED);
     pthread_cond_signal(&d->work);
     hub_unlock(d->hub);

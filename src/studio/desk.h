@@ -6,6 +6,7 @@
 // What is opened: exactly one is given; owned by the desk.
 typedef struct desk_source {
     char* path;     // a document or recipe on disk, absolute
+    bool uploaded;  // with path: it is a copy that goes with the studio
     char* example;  // by name
     char* draft;    // an unsaved document of an earlier run, by name
     json_t* recipe; // steps of a new document
@@ -18,8 +19,8 @@ typedef struct desk_source {
 desk* desk_open(hub* h, const char* id, desk_source source, int client, int re);
 // Waits until it is open. AX_OK, or what came instead.
 ax_status desk_wait(desk* d, ax_error* error);
-// Ends long work and waits for the thread; without the lock held.
-void desk_close(desk* d);
+// Ends long work and waits for the thread; without the lock held. `discard`: a document without a name is not kept.
+void desk_close(desk* d, bool discard);
 
 // The rest is called with the hub's lock held.
 const char* desk_id(const desk* d);

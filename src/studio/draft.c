@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { NAME_LETTERS = 8, LIST_MOST = 32 };
 static const char prefix[] = "draft-";
@@ -70,6 +71,46 @@ ax_status draft_path(const char* id, char** path, ax_error* error)
     return AX_OK;
 }
 
+ax_status draft_folder(const char* id, char** path, ax_error* error)
+{
+    ax_status status = draft_path(id, path, error);
+    if (status != AX_OK)
+        return status;
+    (*path)[strlen(*path) - strlen(ending)] = 0;
+    struct stat about;
+    if (mkdir(*path, 0700) != 0 && (stat(*path, &about) != 0 || !S_ISDIR(about.st_mode))) {
+        status =
+            ax_fail(error, AX_FAILED, "The folder %s for uploaded files cannot be made: %s.", *path, strerror(errno));
+        ax_free(*path);
+        *path = NULL;
+    }
+    return status;
+}
+
+static void remove_draft(const char* id, bool with_files)
+{
+    char path[PATH_MAX + 64];
+    file(id, path);
+    unlink(path);
+    path[strlen(path) - strlen(ending)] = 0;
+    DIR* open = with_files ? opendir(path) : NULL;
+    for (struct dirent* entry; open && (entry = readdir(open));)
+        unlinkat(dirfd(open), entry->d_name, 0); // plain files only: nothing else is put there
+    if (open)
+        closedir(open);
+    rmdir(path);
+}
+
+void draft_remove(const char* id)
+{
+    remove_draft(id, true);
+}
+
+void draft_forget(const char* id)
+{
+    remove_draft(id, false);
+}
+
 static int newest_first(const void* a, const void* b)
 {
     json_int_t x = json_integer_value(json_object_get(*(json_t* const*)a, "time"));
@@ -92,7 +133,8 @@ json_t* draft_list(void)
             continue;
         snprintf(id, sizeof id, "%.*s", (int)(length - strlen(ending)), entry->d_name);
         if (is_id(id) && fstatat(dirfd(open), entry->d_name, &about, 0) == 0)
-            rows[count++] = json_pack("{s:s, s:I}", "name", id, "time", (json_int_t)about.st_mtime);
+            rows[count++] =
+                json_pack("{s:s, s:s, s:I}", "name", id, "title", "Unsaved design", "time", (json_int_t)about.st_mtime);
     }
     if (open)
         closedir(open);

@@ -13,5 +13,10 @@ ax_status draft_new_id(char id[DRAFT_ID], ax_error* error);
 bool draft_exists(const char* id);
 // Where a draft lies, owned by the caller; its folder is made. AX_FAILED when that cannot be.
 ax_status draft_path(const char* id, char** path, ax_error* error);
-// Drafts on disk, newest first: {name, time}.
+// The folder in which a draft's own files lie, owned by the caller; it is made.
+ax_status draft_folder(const char* id, char** path, ax_error* error);
+// Removes a draft with its files; or the document alone, and the folder if it is empty.
+void draft_remove(const char* id);
+void draft_forget(const char* id);
+// Drafts on disk, newest first: {name, title, time}.
 json_t* draft_list(void);

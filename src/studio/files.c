@@ -85,9 +85,19 @@ ax_status files_open(const char* folder, files** out, ax_error* error)
     return AX_OK;
 }
 
+void files_remove(const files* f, const char* path)
+{
+    unlink(path);
+    char* folder = ax_copy(path, strlen(path) + 1, 1);
+    *strrchr(folder, '/') = 0;
+    if (strcmp(folder, f->private) != 0)
+        rmdir(folder); // stays while there is more in it
+    ax_free(folder);
+}
+
 static void drop(files* f, int k)
 {
-    unlink(f->tickets[k].path);
+    files_remove(f, f->tickets[k].path);
     ax_free(f->tickets[k].path);
     f->tickets[k] = f->tickets[--f->count];
 }

@@ -30,6 +30,8 @@ ax_status files_list(const files* f, const char* folder, json_t** list, ax_error
 // A plain file name for people: no slashes, no control characters, not hidden, at most NAME_LENGTH bytes.
 bool files_name_is_plain(const char* name);
 
+// Removes a private file, and with the last one the folder that an export made for it.
+void files_remove(const files* f, const char* path);
 // A private path for a file that is about to be written, which keeps the ending of `name`; owned by the caller.
 char* files_new_path(files* f, const char* name);
 // An upload that has arrived at a private path: the token by which commands call it.

@@ -13,7 +13,8 @@
 static const struct {
     const char *name, *file, *title, *doc;
 } examples[] = {
-    {"welcome", "welcome.json", "Pavilion", "A shell over an oval: painted higher at one end, on an elliptical rim, inflated."},
+    {"welcome", "welcome.json", "Pavilion",
+     "A shell over an oval: painted higher at one end, on an elliptical rim, inflated."},
     {"figure-4", "figure-4.json", "Figure 4", "Painted, hung, expanded, smoothed, and given a circle to stand on."},
 };
 enum { EXAMPLES = sizeof examples / sizeof *examples };
@@ -51,9 +52,10 @@ static json_t* example_list(void)
 json_t* hello_event(const char* folder, const char* start, int client)
 {
     const char* slash = strrchr(folder, '/');
-    return json_pack("{s:s, s:i, s:s, s:i, s:s, s:s, s:o, s:o, s:o, s:o, s:{s:i, s:i, s:i}}", "event", "hello",
+    return json_pack("{s:s, s:i, s:s, s:i, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:{s:i, s:i, s:i}}", "event", "hello",
                      "protocol", 1, "version", ax_version(), "client", client, "folder",
                      slash && slash[1] ? slash + 1 : folder, "start", start, "operators", describe_operators(),
-                     "exporters", describe_exporters(), "examples", example_list(), "recovered", draft_list(), "limits",
-                     "message", MESSAGE_BYTES, "upload", UPLOAD_BYTES, "triangles", 2000000);
+                     "exporters", describe_exporters(), "making", describe_making(), "examples", example_list(),
+                     "recovered", draft_list(), "limits", "message", MESSAGE_BYTES, "upload", UPLOAD_BYTES, "triangles",
+                     2000000);
 }

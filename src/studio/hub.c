@@ -37,6 +37,11 @@ struct hub {
     int numbers; // clients so far
 };
 
+static char* text_copy(const char* text)
+{
+    return text ? ax_copy(text, strlen(text) + 1, 1) : NULL;
+}
+
 void hub_lock(hub* h)
 {
     pthread_mutex_lock(&h->lock);
@@ -297,6 +302,14 @@ bool hub_waiting(hub* h, hub_client* c)
     return some;
 }
 
+void hub_renamed(hub* h, const char* old, const char* id)
+{
+    if (strcmp(h->start, old) == 0) {
+        ax_free(h->start);
+        h->start = text_copy(id);
+    }
+}
+
 // ---- desks --------------------------------------------------------------------------------------------------------------------
 
 static desk* find_desk(const hub* h, const char* id)
@@ -331,7 +344,7 @@ static void reap(hub* h)
                 c->opening = NULL;
         }
         hub_unlock(h);
-        desk_close(d);
+        desk_close(d, false);
         hub_lock(h);
     }
 }
@@ -350,7 +363,7 @@ static ax_status find_place(hub* h, int* place, ax_error* error)
             desk* d = h->desks[k];
             h->desks[k] = NULL;
             hub_unlock(h);
-            desk_close(d);
+            desk_close(d, false);
             hub_lock(h);
             *place = k;
             return AX_OK;
@@ -395,20 +408,26 @@ static ax_status open_desk(hub* h, hub_client* c, int re, const char* id, desk_s
     return AX_OK;
 }
 
-static char* text_copy(const char* text)
+static bool is_document(const char* path)
 {
-    return text ? ax_copy(text, strlen(text) + 1, 1) : NULL;
+    size_t length = strlen(path);
+    return length > 9 && strcasecmp(path + length - 9, ".auxshell") == 0;
 }
 
+// Documents are edited where they are and go by their paths; recipes become new documents.
 static ax_status open_path(hub* h, hub_client* c, int re, const char* path, ax_error* error)
 {
-    char* whole;
+    char *whole, draft[DRAFT_ID];
     ax_status status = files_within(h->files, path, &whole, error);
     if (status != AX_OK)
         return status;
-    char* id = text_copy(files_relative(h->files, whole));
-    status = open_desk(h, c, re, id, (desk_source){.path = whole}, error);
-    ax_free(id);
+    bool document = is_document(path);
+    if (!document)
+        status = draft_new_id(draft, error);
+    if (status == AX_OK)
+        status = open_desk(h, c, re, document ? files_relative(h->files, whole) : draft,
+                           (desk_source){.path = text_copy(whole)}, error);
+    ax_free(whole);
     return status;
 }
 
@@ -462,7 +481,7 @@ static ax_status open_document(hub* h, hub_client* c, const message* m, ax_error
         status = draft_new_id(id, error);
     if (status != AX_OK)
         return status;
-    return open_desk(h, c, m->id, id, (desk_source){.path = file, .name = text_copy(name)}, error);
+    return open_desk(h, c, m->id, id, (desk_source){.path = file, .uploaded = true, .name = text_copy(name)}, error);
 }
 
 static ax_status new_document(hub* h, hub_client* c, const message* m, ax_error* error)
@@ -514,6 +533,37 @@ static ax_status cancel(hub* h, hub_client* c, const message* m, ax_error* error
     return AX_OK;
 }
 
+// For everyone who sees it: a document that others look at is not taken from them in silence.
+static ax_status close_document(hub* h, hub_client* c, const message* m, ax_error* error)
+{
+    int discard = 0;
+    ax_status status = message_unpack(m, error, "{s?b}", "discard", &discard);
+    desk* d = c->shown;
+    if (status == AX_OK && !d)
+        status = ax_fail(error, AX_USAGE, "close: no document is shown.");
+    if (status != AX_OK)
+        return status;
+    json_t* event =
+        json_pack("{s:s, s:s, s:s}", "event", "closed", "document", desk_id(d), "message", "The document was closed.");
+    for (int k = 0; k < DESKS_MOST; ++k)
+        if (h->desks[k] == d)
+            h->desks[k] = NULL;
+    for (int k = 0; k < CLIENTS_MOST; ++k) {
+        hub_client* other = h->clients[k];
+        if (!other || other->shown != d)
+            continue;
+        other->shown = NULL;
+        if (other != c)
+            push_json(h, other, event);
+    }
+    json_decref(event);
+    hub_unlock(h);
+    desk_close(d, discard);
+    hub_lock(h);
+    answer(h, c, m->id, NULL);
+    return AX_OK;
+}
+
 static ax_status seen(hub* h, hub_client* c, const message* m, ax_error* error)
 {
     (void)error;
@@ -529,7 +579,8 @@ typedef struct hub_action {
 } hub_action;
 
 static const hub_action actions[] = {{"join", join},        {"open", open_document}, {"new", new_document},
-                                     {"files", list_files}, {"cancel", cancel},      {"seen", seen}};
+                                     {"files", list_files}, {"cancel", cancel},      {"close", close_document},
+                                     {"seen", seen}};
 
 // Commands that go past the line of those that wait.
 static ax_status at_once(hub* h, hub_client* c, message* m, bool* known, ax_error* error)
@@ -617,14 +668,16 @@ ax_status hub_start(hub* h, const char* path, ax_error* error)
     char id[DRAFT_ID];
     desk_source source = {0};
     ax_status status;
-    if (path) {
+    if (path)
         status = files_within(h->files, path, &source.path, error);
-        h->start = status == AX_OK ? text_copy(files_relative(h->files, source.path)) : NULL;
-    } else {
-        status = draft_new_id(id, error);
+    else {
         source.example = text_copy(hello_first_example());
-        h->start = text_copy(id);
+        status = AX_OK;
     }
+    if (status == AX_OK)
+        status = draft_new_id(id, error);
+    if (status == AX_OK)
+        h->start = text_copy(path && is_document(path) ? files_relative(h->files, source.path) : id);
     if (status != AX_OK) {
         free_source(&source);
         return status;
@@ -646,7 +699,7 @@ void hub_end_desks(hub* h)
                 h->clients[i]->shown = NULL;
         hub_unlock(h);
         if (d)
-            desk_close(d);
+            desk_close(d, false);
     }
 }
 

@@ -65,4 +65,6 @@ size_t hub_before(const hub* h);
 bool hub_send(hub* h, int client, unsigned char* block, size_t size, const bool* give_up);
 // The client shows this desk from now on; with the lock held.
 void hub_show(hub* h, int client, desk* d);
+// A document has another id from now on; with the lock held.
+void hub_renamed(hub* h, const char* old, const char* id);
 json_t* hub_problem(const ax_error* error);

@@ -1,8 +1,8 @@
 // A desk's insides, and the commands that it carries out in order.
 #pragma once
 
+#include "ax/session.h"
 #include "studio/desk.h"
-#include "studio/session.h"
 #include "studio/shape.h"
 
 typedef struct job {
@@ -44,7 +44,7 @@ struct desk {
     // with the hub's lock
     char* id;
     pthread_cond_t work, open;
-    bool opened, ended;
+    bool opened, ended, discard;
     ax_error fault; // why it is not open
     job *first, **last;
     preview preview;
@@ -60,8 +60,11 @@ struct desk {
     unsigned event_numbers[SLOT_COUNT];
 
     // the thread's own
-    session* session;
-    char *name, *path, *folder; // path: NULL while it has no name; folder: where steps find files
+    ax_session* session;
+    const ax_design* exact;     // of the present state, if it is finished
+    bool draft;                 // it has no name yet
+    int beginning;              // moments of its history that nobody edited
+    char *name, *path, *folder; // path: of the document's file; folder: where steps find files
     ax_form* live;              // what the hand pulls about, a copy of the session's form
     double* live_scale;         // its prescribed factors before the gesture
     char* live_op;              // the operator that is being previewed
@@ -85,11 +88,13 @@ typedef struct job_type {
     const char* name;
     bool edits; // ends what the hand is at
     ax_status (*run)(desk* d, const job* j, json_t** result, ax_error* error);
+    bool plain; // takes no parameters
 } job_type;
 
 const job_type* job_find(const char* action);
-// Opens what the desk was made for.
+// Opens what the desk was made for, and closes it.
 ax_status job_open(desk* d, ax_error* error);
+void job_close(desk* d, bool discard);
 
 // For jobs: the desk's own doings.
 ax_progress desk_progress(desk* d);
@@ -98,6 +103,7 @@ void desk_end_live(desk* d);
 void desk_play(desk* d);
 void desk_step(desk* d, int iterations);
 void desk_restart(desk* d, double height);
+void desk_rename(desk* d, const char* id);
 void desk_begin_edit(desk* d); // before every change of the document
 void desk_free_variants(desk* d);
 json_t* job_variants(const desk* d);

@@ -134,7 +134,7 @@ static ax_status motion(desk* d, const job* j, json_t** result, ax_error* error)
         return status;
     size_t size;
     ax_form* form = NULL;
-    void* bytes = ax_form_save(session_form(d->session), &size);
+    void* bytes = ax_form_save(ax_session_form(d->session), &size);
     status = ax_form_load(bytes, size, &form, error);
     ax_free(bytes);
     if (status != AX_OK)
@@ -163,6 +163,6 @@ static ax_status motion(desk* d, const job* j, json_t** result, ax_error* error)
 }
 
 const job_type job_types_dynamics[] = {
-    {"play", false, play},    {"step", false, step},     {"restart", false, restart},
-    {"settle", true, settle}, {"motion", false, motion}, {0},
+    {"play", false, play, true},    {"step", false, step, false},     {"restart", false, restart, false},
+    {"settle", true, settle, true}, {"motion", false, motion, false}, {0},
 };

@@ -8,6 +8,7 @@
 #include "ax/picture.h"
 #include "base/file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -152,12 +153,101 @@ static ax_status keep(desk* d, const job* j, json_t** result, ax_error* error)
     return status;
 }
 
-// The design that is written to files: exact if there is one.
+// What is cut, out of what, on what: in the words of the command's options. Profiles go by name here: their files may lie anywhere.
+static ax_status choose_making(const char* joint, const char* material, const char* sheet, const char* profile_name,
+                               ax_fabricate_options* options, ax_profile* profile, ax_error* error)
+{
+    if (profile_name && strpbrk(profile_name, "./"))
+        return ax_fail(error, AX_USAGE, "export: \"profile\" is the name of one of the machine profiles.");
+    ax_status status = ax_profile_find(profile_name ? profile_name : "generic", profile, error);
+    if (status == AX_OK && joint)
+        status = ax_fabricate_set_joint(options, joint, error);
+    if (status == AX_OK && material)
+        status = ax_fabricate_set_material(options, material, error);
+    if (status == AX_OK && sheet)
+        status = ax_fabricate_set_sheet(options, sheet, error);
+    if (status == AX_OK && !(options->kerf >= 0 && options->kerf <= 10 && options->margin >= 0 &&
+                             options->margin <= 1000 && options->spacing >= 0 && options->spacing <= 1000))
+        status =
+            ax_fail(error, AX_USAGE, "export: \"kerf\" is 0 to 10 mm, \"margin\" and \"spacing\" are 0 to 1000 mm.");
+    options->profile = profile;
+    return status;
+}
+
+// Offers every file of a folder that an export has filled; the folder itself goes when they are gone.
+static ax_status offer_folder(desk* d, const char* folder, json_t* list, ax_error* error)
+{
+    struct dirent** entries;
+    int count = scandir(folder, &entries, NULL, versionsort);
+    ax_status status =
+        count < 0 ? ax_fail(error, AX_FAILED, "The files cannot be read again: %s.", strerror(errno)) : AX_OK;
+    for (int k = 0; k < count; ++k) {
+        const char* name = entries[k]->d_name;
+        size_t size = strlen(folder) + strlen(name) + 2;
+        char *path = ax_alloc(size, 1), token[TOKEN_LENGTH + 1];
+        struct stat about;
+        snprintf(path, size, "%s/%s", folder, name);
+        if (status == AX_OK && stat(path, &about) == 0 && S_ISREG(about.st_mode)) {
+            status = files_offer(hub_files(d->hub), path, name, token, error);
+            if (status == AX_OK)
+                json_array_append_new(list,
+                                      json_pack("{s:s, s:o, s:I}", "name", name, "url", json_sprintf("file/%s", token),
+                                                "bytes", (json_int_t)about.st_size));
+        }
+        ax_free(path);
+        free(entries[k]);
+    }
+    if (count >= 0)
+        free(entries);
+    return status;
+}
+
+// The steps that are applied, as a recipe that can be played.
+static ax_status write_recipe(const ax_session* session, const char* path, ax_error* error)
+{
+    if (ax_session_from_design(session))
+        return ax_fail(error, AX_BAD_INPUT,
+                       "This document began as a finished design, so it has no recipe of its own. Export the "
+                       "design itself: .json.");
+    char* text = ax_recipe_text(ax_session_recipe(session));
+    ax_recipe* recipe;
+    ax_status status = ax_recipe_parse(text, &recipe, error);
+    ax_free(text);
+    if (status != AX_OK)
+        return status;
+    while (ax_recipe_count(recipe) > ax_session_at(session))
+        ax_recipe_remove(recipe, ax_recipe_count(recipe) - 1);
+    status = ax_recipe_write(recipe, path, error);
+    ax_recipe_free(recipe);
+    return status;
+}
+
+// The finished design if there is one, else the states as they stand.
+static ax_status write_design(desk* d, const char* path, ax_export_options* options, ax_error* error)
+{
+    if (d->exact)
+        return ax_export(d->exact, path, options, error);
+    ax_design design;
+    ax_form_snapshot(ax_session_form(d->session), false, &design);
+    ax_status status = ax_export(&design, path, options, error);
+    ax_design_free(&design);
+    return status;
+}
+
 static ax_status export(desk* d, const job* j, json_t** result, ax_error* error)
 {
-    const char *ending, *word = NULL;
-    ax_export_options options = {0};
-    ax_status status = message_unpack(&j->message, error, "{s:s, s?s}", "ending", &ending, "state", &word);
+    const char *ending, *word = NULL, *joint = NULL, *material = NULL, *sheet = NULL, *profile_name = NULL;
+    const ax_progress progress = desk_progress(d);
+    ax_cut_plan plan = {0};
+    ax_profile profile;
+    ax_fabricate_options making = ax_fabricate_options_default();
+    ax_export_options options = {.title = d->name, .fabricate = &making, .progress = &progress, .plan = &plan};
+    ax_status status =
+        message_unpack(&j->message, error, "{s:s, s?s, s?s, s?s, s?s, s?s, s?F, s?F, s?F}", "ending", &ending, "state",
+                       &word, "joint", &joint, "material", &material, "sheet", &sheet, "profile", &profile_name, "kerf",
+                       &making.kerf, "margin", &making.margin, "spacing", &making.spacing);
+    if (status == AX_OK)
+        status = choose_making(joint, material, sheet, profile_name, &making, &profile, error);
     if (status != AX_OK)
         return status;
     for (int s = AX_STATE_FLAT; word && s <= AX_STATE_SIMULATED; ++s)
@@ -165,35 +255,42 @@ static ax_status export(desk* d, const job* j, json_t** result, ax_error* error)
             options.state = (ax_state)s;
     if (word && options.state == AX_STATE_DEFAULT)
         return ax_fail(error, AX_USAGE, "export: \"state\" is flat, deployed or simulated.");
-    const ax_design* design = session_exact(d->session);
-    if (!design)
-        return ax_fail(error, AX_CANNOT_REALISE, "The design is not exact yet: finish it, then export.");
-    options.title = d->name;
-    char name[NAME_LENGTH + 1], token[TOKEN_LENGTH + 1];
+    char name[NAME_LENGTH + 1];
     snprintf(name, sizeof name, "%.80s%.16s", d->name, ending);
-    if (!files_name_is_plain(name))
+    if (!files_name_is_plain(name) || *ending != '.')
         return ax_fail(error, AX_USAGE, "export: \"ending\" is an ending such as \".svg\".");
-    char* path = files_new_path(hub_files(d->hub), name);
-    struct stat about;
-    status = ax_export(design, path, &options, error);
-    if (status == AX_OK && stat(path, &about) != 0)
-        status = ax_fail(error, AX_FAILED, "The file cannot be read again: %s.", strerror(errno));
+    char* folder = files_new_path(hub_files(d->hub), "");
+    size_t size = strlen(folder) + NAME_LENGTH + 2;
+    char* path = ax_alloc(size, 1);
+    snprintf(path, size, "%s/%s", folder, name);
+    json_t* list = json_array();
+    if (mkdir(folder, 0700) != 0)
+        status = ax_fail(error, AX_FAILED, "No file can be written: %s.", strerror(errno));
     if (status == AX_OK)
-        status = files_offer(hub_files(d->hub), path, name, token, error);
+        status = strcmp(ending, ".recipe.json") == 0 ? write_recipe(d->session, path, error)
+                                                     : write_design(d, path, &options, error);
     if (status == AX_OK)
-        *result = json_pack("{s:[{s:s, s:o, s:I}]}", "files", "name", name, "url", json_sprintf("file/%s", token),
-                            "bytes", (json_int_t)about.st_size);
+        status = offer_folder(d, folder, list, error);
+    if (status != AX_OK)
+        rmdir(folder);
+    *result = json_pack("{s:o, s:b, s:o}", "files", list, "exact", d->exact != NULL, "plan", describe_plan(&plan));
+    ax_cut_plan_free(&plan);
     ax_free(path);
+    ax_free(folder);
     return status;
 }
 
-// ---- opening ------------------------------------------------------------------------------------------------------------------
+// ---- opening and saving -------------------------------------------------------------------------------------------------------
+
+static const char program[] = "auxshell studio";
 
 static char* folder_of(const char* path)
 {
     const char* slash = strrchr(path, '/');
-    char* folder = ax_copy(path, (size_t)(slash - path) + 1, 1);
-    folder[slash == path ? 1 : slash - path] = 0;
+    size_t length = slash == path ? 1 : (size_t)(slash - path);
+    char* folder = ax_alloc(length + 1, 1);
+    memcpy(folder, path, length);
+    folder[length] = 0;
     return folder;
 }
 
@@ -208,46 +305,183 @@ static char* name_of(const char* path)
     return name;
 }
 
-ax_status job_open(desk* d, ax_error* error)
+static bool ends_in(const char* text, const char* ending)
 {
-    desk_source* from = &d->source;
-    char *recipe_text = NULL, *draft = NULL, *file = NULL;
-    ax_status status = AX_OK;
-    if (from->path)
-        file = text_copy(from->path);
-    else if (from->draft)
-        status = draft_path(from->draft, &file, error);
-    else if (from->example) {
-        file = hello_example_path(from->example);
-        if (!file)
-            status = ax_fail(error, AX_BAD_INPUT, "There is no example \"%.100s\".", from->example);
-    } else
-        status = draft_path(d->id, &draft, error);
-    if (status == AX_OK) {
-        d->folder = folder_of(file ? file : draft);
-        d->name = from->name                    ? name_of(from->name)
-                  : from->path || from->example ? name_of(file)
-                                                : text_copy("Untitled");
-        d->path = from->path && files_relative(hub_files(d->hub), from->path) ? text_copy(from->path) : NULL;
-    }
-    if (status == AX_OK && from->recipe) {
-        json_t* whole =
-            json_pack("{s:s, s:i, s:O}", "format", "auxshell-recipe", "version", 1, "operators", from->recipe);
-        recipe_text = json_dumps(whole, JSON_COMPACT);
-        json_decref(whole);
-        const char* name;
-        json_t* token;
-        json_object_foreach(from->files, name, token) if (status == AX_OK) status =
-            json_is_string(token) ? keep_upload(d, json_string_value(token), name, error)
-                                  : ax_fail(error, AX_USAGE, "new: \"files\" names uploads by their tokens.");
-    }
+    size_t length = strlen(text), part = strlen(ending);
+    return length > part && strcasecmp(text + length - part, ending) == 0;
+}
+
+// A document from steps. What was not edited is not kept when it is closed.
+static ax_status create(desk* d, const ax_recipe* recipe, ax_error* error)
+{
     const ax_progress progress = desk_progress(d);
+    const ax_session_start start = {
+        .recipe = recipe, .until = -1, .folder = d->folder, .program = program, .keep = true};
+    ax_status status = ax_session_create(d->path, &start, &progress, &d->session, error);
+    const ax_moment* moments;
+    int now;
     if (status == AX_OK)
-        status = session_open(file, recipe_text, d->folder, &progress, &d->session, error);
-    free(recipe_text);
-    ax_free(draft);
-    ax_free(file);
+        d->beginning = ax_session_history(d->session, &moments, &now);
     return status;
 }
 
-const job_type job_types_files[] = {{"check", false, check}, {"keep", false, keep}, {"export", false, export}, {0}};
+static ax_status create_from_file(desk* d, const char* file, ax_error* error)
+{
+    ax_recipe* recipe;
+    ax_status status = ax_recipe_read(file, &recipe, error);
+    if (status == AX_OK) {
+        d->folder = folder_of(file);
+        status = create(d, recipe, error);
+        ax_recipe_free(recipe);
+    }
+    return status;
+}
+
+// Steps from a page, and the uploads they name, in a folder of their own.
+static ax_status create_from_steps(desk* d, json_t* steps, json_t* uploads, ax_error* error)
+{
+    ax_status status = draft_folder(d->id, &d->folder, error);
+    const char* name;
+    json_t* token;
+    json_object_foreach(uploads, name, token)
+    {
+        if (status == AX_OK)
+            status = json_is_string(token) ? keep_upload(d, json_string_value(token), name, error)
+                                           : ax_fail(error, AX_USAGE, "new: \"files\" names uploads by their tokens.");
+    }
+    if (status != AX_OK)
+        return status;
+    json_t* whole = json_pack("{s:s, s:i, s:O}", "format", "auxshell-recipe", "version", 1, "operators", steps);
+    char* text = json_dumps(whole, JSON_COMPACT);
+    json_decref(whole);
+    ax_recipe* recipe = NULL;
+    status = ax_recipe_parse(text, &recipe, error);
+    free(text);
+    if (status == AX_OK)
+        status = create(d, recipe, error);
+    ax_recipe_free(recipe);
+    return status;
+}
+
+static ax_status open_session(desk* d, ax_error* error)
+{
+    const ax_progress progress = desk_progress(d);
+    ax_status status = ax_session_open(d->path, true, program, &progress, &d->session, error);
+    d->folder = folder_of(d->path);
+    if (status == AX_OK && !ax_session_form(d->session)) {
+        ax_session_close(d->session);
+        d->session = NULL;
+        status = ax_fail(error, AX_BAD_INPUT, "%s is empty: no step of it is applied.", d->path);
+    }
+    return status;
+}
+
+ax_status job_open(desk* d, ax_error* error)
+{
+    desk_source* from = &d->source;
+    bool document = from->path && ends_in(from->path, ".auxshell"), recipe = from->path && ends_in(from->path, ".json");
+    if (from->path && !document && !recipe && access(from->path, F_OK) == 0)
+        return ax_fail(error, AX_BAD_INPUT, "%s is neither a document (.auxshell) nor a recipe (.json).",
+                       strrchr(from->path, '/') + 1);
+    d->name = name_of(from->name ? from->name : from->path ? from->path : from->example ? from->example : "Untitled");
+    if (document && !from->uploaded) {
+        d->path = text_copy(from->path);
+        return open_session(d, error);
+    }
+    d->draft = true;
+    ax_status status = draft_path(d->id, &d->path, error);
+    if (status != AX_OK)
+        return status;
+    if (from->draft)
+        return open_session(d, error);
+    if (document) {
+        status = copy_file(from->path, d->path, false, error);
+        return status == AX_OK ? open_session(d, error) : status;
+    }
+    if (from->path)
+        return create_from_file(d, from->path, error);
+    if (from->recipe)
+        return create_from_steps(d, from->recipe, from->files, error);
+    char* example = hello_example_path(from->example);
+    status = example ? create_from_file(d, example, error)
+                     : ax_fail(error, AX_BAD_INPUT, "There is no example \"%.100s\".", from->example);
+    ax_free(example);
+    return status;
+}
+
+// A draft that nobody edited, or that is not wanted, goes.
+void job_close(desk* d, bool discard)
+{
+    const ax_moment* moments;
+    int now;
+    bool unedited = d->session && d->beginning && ax_session_history(d->session, &moments, &now) == d->beginning;
+    ax_session_close(d->session);
+    d->session = NULL;
+    d->exact = NULL;
+    if (d->draft && (discard || unedited))
+        draft_remove(d->id);
+}
+
+// The session in another file, from now on.
+static ax_status move_to(desk* d, char* path, ax_error* error)
+{
+    const ax_progress progress = desk_progress(d);
+    ax_session* moved;
+    ax_status status = ax_session_copy(d->session, path, error);
+    if (status == AX_OK)
+        status = ax_session_open(path, true, program, &progress, &moved, error);
+    if (status != AX_OK)
+        return status;
+    ax_session_close(d->session);
+    d->session = moved;
+    d->exact = NULL;
+    char* old = text_copy(d->id);
+    desk_rename(d, files_relative(hub_files(d->hub), path));
+    if (d->draft)
+        draft_forget(old); // its files stay where steps find them
+    ax_free(old);
+    ax_free(d->path);
+    ax_free(d->name);
+    d->draft = false;
+    d->path = text_copy(path);
+    d->name = name_of(path);
+    return AX_OK;
+}
+
+static ax_status save(desk* d, const job* j, json_t** result, ax_error* error)
+{
+    const char* name = NULL;
+    int overwrite = 0;
+    ax_status status = message_unpack(&j->message, error, "{s?s, s?b}", "path", &name, "overwrite", &overwrite);
+    if (status != AX_OK)
+        return status;
+    if (!name && d->draft)
+        return ax_fail(error, AX_USAGE, "save: the document has no name yet: give \"path\".");
+    if (name) {
+        char *path, *whole = ax_alloc(strlen(name) + sizeof ".auxshell", 1);
+        sprintf(whole, "%s%s", name, ends_in(name, ".auxshell") ? "" : ".auxshell");
+        status = files_within(hub_files(d->hub), whole, &path, error);
+        ax_free(whole);
+        if (status == AX_OK && strcmp(path, d->path) != 0) {
+            desk_end_live(d);
+            if (!overwrite && access(path, F_OK) == 0)
+                status =
+                    ax_fail(error, AX_BAD_INPUT, "There is a file %s already. Choose another name, or overwrite it.",
+                            strrchr(path, '/') + 1);
+            else
+                status = move_to(d, path, error);
+        }
+        ax_free(path);
+    }
+    if (status == AX_OK)
+        *result = json_pack("{s:s, s:s}", "path", files_relative(hub_files(d->hub), d->path), "document", d->id);
+    return status;
+}
+
+const job_type job_types_files[] = {
+    {"check", false, check, false},
+    {"keep", false, keep, false},
+    {"export", false, export, false},
+    {"save", false, save, false},
+    {0},
+};

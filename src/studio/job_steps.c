@@ -6,7 +6,7 @@
 
 static json_t* at_result(const desk* d)
 {
-    return json_pack("{s:i}", "at", session_at(d->session));
+    return json_pack("{s:i}", "at", ax_session_at(d->session));
 }
 
 static ax_status step_text(const job* j, json_t* step, char** text, ax_error* error)
@@ -28,7 +28,7 @@ static ax_status apply(desk* d, const job* j, json_t** result, ax_error* error)
         return status;
     desk_begin_edit(d);
     const ax_progress progress = desk_progress(d);
-    status = session_apply(d->session, text, &progress, error);
+    status = ax_session_apply(d->session, text, &progress, error);
     free(text);
     *result = at_result(d);
     return status;
@@ -48,7 +48,7 @@ static ax_status edit(desk* d, const job* j, json_t** result, ax_error* error)
         return status;
     desk_begin_edit(d);
     const ax_progress progress = desk_progress(d);
-    status = session_edit(d->session, k, text, &progress, error);
+    status = ax_session_edit(d->session, k, text, &progress, error);
     free(text);
     *result = at_result(d);
     return status;
@@ -62,7 +62,7 @@ static ax_status go(desk* d, const job* j, json_t** result, ax_error* error)
         return status;
     desk_begin_edit(d);
     const ax_progress progress = desk_progress(d);
-    status = session_go(d->session, at, &progress, error);
+    status = ax_session_go(d->session, at, &progress, error);
     *result = at_result(d);
     return status;
 }
@@ -71,8 +71,8 @@ static ax_status undo(desk* d, const job* j, json_t** result, ax_error* error)
 {
     desk_begin_edit(d);
     const ax_progress progress = desk_progress(d);
-    ax_status status = strcmp(j->message.action, "undo") == 0 ? session_undo(d->session, &progress, error)
-                                                              : session_redo(d->session, &progress, error);
+    ax_status status = strcmp(j->message.action, "undo") == 0 ? ax_session_undo(d->session, &progress, error)
+                                                              : ax_session_redo(d->session, &progress, error);
     *result = at_result(d);
     return status;
 }
@@ -83,7 +83,7 @@ static ax_status finish(desk* d, const job* j, json_t** result, ax_error* error)
     desk_begin_edit(d);
     ax_finish made = {0};
     const ax_progress progress = desk_progress(d);
-    ax_status status = session_finish(d->session, &progress, &made, error);
+    ax_status status = ax_session_finish(d->session, &progress, &made, error);
     if (status == AX_OK)
         *result =
             json_pack("{s:b, s:s, s:o, s:o, s:o, s:o}", "exact", made.exact, "reason", made.reason, "flat_moved_rms",
@@ -96,7 +96,7 @@ static ax_status finish(desk* d, const job* j, json_t** result, ax_error* error)
 static ax_status recipe(desk* d, const job* j, json_t** result, ax_error* error)
 {
     (void)j, (void)error;
-    char* text = ax_recipe_text(session_recipe(d->session));
+    char* text = ax_recipe_text(ax_session_recipe(d->session));
     *result = json_pack("{s:s}", "text", text);
     ax_free(text);
     return AX_OK;
@@ -108,7 +108,7 @@ static ax_status select_hinges(desk* d, const job* j, json_t** result, ax_error*
     int *hinges, count;
     ax_status status = message_unpack(&j->message, error, "{s:s}", "hinges", &words);
     if (status == AX_OK)
-        status = ax_select(session_form(d->session), words, &hinges, &count, error);
+        status = ax_select(ax_session_form(d->session), words, &hinges, &count, error);
     if (status != AX_OK)
         return status;
     json_t* list = json_array();
@@ -120,14 +120,14 @@ static ax_status select_hinges(desk* d, const job* j, json_t** result, ax_error*
 }
 
 const job_type job_types_steps[] = {
-    {"apply", true, apply},
-    {"edit", true, edit},
-    {"remove", true, edit},
-    {"goto", true, go},
-    {"undo", true, undo},
-    {"redo", true, undo},
-    {"finish", true, finish},
-    {"recipe", false, recipe},
-    {"select", false, select_hinges},
+    {"apply", true, apply, false},
+    {"edit", true, edit, false},
+    {"remove", true, edit, false},
+    {"goto", true, go, false},
+    {"undo", true, undo, true},
+    {"redo", true, undo, true},
+    {"finish", true, finish, true},
+    {"recipe", false, recipe, true},
+    {"select", false, select_hinges, false},
     {0},
 };

@@ -43,7 +43,7 @@ static ax_status named(const desk* d, const job* j, int* k, ax_error* error)
 
 json_t* job_variants(const desk* d)
 {
-    char* present = ax_recipe_text(session_recipe(d->session));
+    char* present = ax_recipe_text(ax_session_recipe(d->session));
     json_t* list = json_array();
     for (int k = 0; k < d->variant_count; ++k) {
         const variant* v = &d->variants[k];
@@ -72,18 +72,18 @@ static ax_status keep(desk* d, const job* j, json_t** result, ax_error* error)
         k = d->variant_count++;
         d->variants = ax_realloc(d->variants, (size_t)d->variant_count, sizeof *d->variants);
     }
-    ax_form* form = session_form(d->session);
+    ax_form* form = ax_session_form(d->session);
     ax_form_view view = ax_form_look(form);
     ax_form_report report;
     ax_form_measure(form, &report);
     shape_measures measures = shape_measure(&view);
     variant* v = &d->variants[k];
     *v = (variant){.name = ax_copy(name, strlen(name) + 1, 1),
-                   .recipe = ax_recipe_text(session_recipe(d->session)),
+                   .recipe = ax_recipe_text(ax_session_recipe(d->session)),
                    .triangles = view.linkage->triangle_count,
-                   .steps = session_at(d->session),
-                   .exact = session_exact(d->session) != NULL,
-                   .checks = describe_checks(&report, &view, measures.curvature, session_exact(d->session))};
+                   .steps = ax_session_at(d->session),
+                   .exact = d->exact != NULL,
+                   .checks = describe_checks(&report, &view, measures.curvature, d->exact)};
     v->form = ax_form_save(form, &v->size);
     shape_measures_free(&measures);
     ax_form_report_free(&report);
@@ -99,7 +99,12 @@ static ax_status take(desk* d, const job* j, json_t** result, ax_error* error)
         return status;
     desk_begin_edit(d);
     const ax_progress progress = desk_progress(d);
-    return session_replace(d->session, d->variants[k].recipe, &progress, error);
+    ax_recipe* recipe;
+    status = ax_recipe_parse(d->variants[k].recipe, &recipe, error);
+    if (status == AX_OK)
+        status = ax_session_replace(d->session, recipe, &progress, error);
+    ax_recipe_free(recipe);
+    return status;
 }
 
 static ax_status look(desk* d, const job* j, json_t** result, ax_error* error)
@@ -145,9 +150,9 @@ static ax_status drop(desk* d, const job* j, json_t** result, ax_error* error)
 }
 
 const job_type job_types_variants[] = {
-    {"variant", false, keep},
-    {"variant_take", true, take},
-    {"variant_look", false, look},
-    {"variant_drop", false, drop},
+    {"variant", false, keep, false},
+    {"variant_take", true, take, false},
+    {"variant_look", false, look, false},
+    {"variant_drop", false, drop, false},
     {0},
 };

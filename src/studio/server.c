@@ -151,7 +151,7 @@ static int send_offer(ax_studio* s, struct lws* wsi, connection* c, const char* 
     if (size < 0 || lseek(file, 0, SEEK_SET) != 0) {
         if (file >= 0)
             close(file);
-        unlink(path);
+        files_remove(hub_files(s->hub), path);
         ax_free(path);
         return refuse(wsi, 500, "The file cannot be read any more. Export again.\n");
     }
@@ -279,14 +279,14 @@ static int request(ax_studio* s, struct lws* wsi, connection* c)
     return refuse(wsi, 404, "The page has no such file.\n");
 }
 
-static void end_connection(connection* c)
+static void end_connection(ax_studio* s, connection* c)
 {
     if (c->kind != CONNECTION_DOWNLOAD && c->kind != CONNECTION_UPLOAD)
         return;
     if (c->file >= 0 && !c->at)
         close(c->file);
     if (c->path) { // a download that was fetched, or an upload that did not end
-        unlink(c->path);
+        files_remove(hub_files(s->hub), c->path);
         ax_free(c->path);
     }
     *c = (connection){0};
@@ -388,7 +388,7 @@ static int serve(struct lws* wsi, enum lws_callback_reasons reason, void* user, 
     case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
     case LWS_CALLBACK_CLOSED_HTTP:
         if (c)
-            end_connection(c);
+            end_connection(s, c);
         return 0;
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
         return upgrade(s, wsi);
