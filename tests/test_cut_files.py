@@ -121,7 +121,7 @@ class CutFiles(CommandCase):
     def test_schedule_lists_everything_once(self):
         text = self.export("dome.csv", "--joint", "ring", "--material", "plywood-3").read_bytes().decode()
         tables = [list(csv.DictReader(part.splitlines())) for part in text.split("\r\n\r\n")]
-        panels, hinges, parts, totals = tables
+        panels, hinges, sizes, parts, totals = tables
         self.assertEqual(len(panels), len(self.edges))
         self.assertEqual(len({row["panel"] for row in panels}), len(panels))
         for row, edges in zip(panels, self.edges):
@@ -133,7 +133,30 @@ class CutFiles(CommandCase):
         total = {row["total"]: float(row["value"]) for row in totals}
         self.assertEqual(total["panels"], len(panels))
         self.assertAlmostEqual(total["mass"] * 1000, sum(float(row["mass g"]) for row in panels), delta=1)
+        self.assertEqual(total["sizes"], len(sizes))
+        self.assertEqual([int(row["panels"]) for row in sizes],
+                         [sum(1 for p in panels if p["size"] == row["size"]) for row in sizes])
         self.assertTrue(parts and all(int(row["count"]) > 0 for row in parts))
+
+    def test_sizes_are_as_close_as_said(self):
+        for count in (1, 5, 40):
+            text = self.export("dome.csv", "--clusters", count).read_bytes().decode()
+            panels, _, sizes, _, totals = [list(csv.DictReader(part.splitlines())) for part in text.split("\r\n\r\n")]
+            total = {row["total"]: float(row["value"]) for row in totals}
+            self.assertLessEqual(len(sizes), count)
+            worst = 0
+            for row in panels:
+                size = sizes[int(row["size"]) - 1]
+                ours, theirs = ([float(r[f"edge {k} mm"]) for k in range(3)] for r in (row, size))
+                error = min(max(abs(ours[(k + turn) % 3] - theirs[k]) for k in range(3)) for turn in range(3))
+                self.assertLessEqual(error, float(size["error mm"]) + 0.002)
+                worst = max(worst, error)
+            self.assertAlmostEqual(worst, total["sizes: largest edge error"], delta=0.002)
+            # panels are equilateral, but for a ten thousandth at the rim: equal intervals would do as well
+            means = [sum(edges) / 3 for edges in self.edges]
+            self.assertLessEqual(worst, (max(means) - min(means)) / 2 / count + 2e-4 * max(means))
+        within = self.export("dome.csv").read_bytes().decode()
+        self.assertLessEqual(float(re.search(r"largest edge error,([\d.]+)", within)[1]), 0.1001)
 
     def test_3mf_holds_closed_prisms(self):
         with zipfile.ZipFile(self.export("dome.3mf", "--material", "plywood-3")) as archive:

@@ -13,6 +13,7 @@ typedef struct arguments {
     const char *document, *out;
     ax_state state;
     fabricate_arguments fabricate;
+    int clusters;
 } arguments;
 
 static void defaults(void* given)
@@ -44,6 +45,14 @@ static const command_option options[] = {
      .fallback = "flat for cut files, deployed otherwise",
      .offset = offsetof(arguments, state)},
     FABRICATE_OPTIONS(arguments, fabricate),
+    {.name = "--clusters",
+     .value = "K",
+     .text = "how many sizes of panel the schedule (.csv) proposes, with the error they would cause",
+     .kind = OPTION_INTEGER,
+     .lo = 1,
+     .hi = 2e6,
+     .fallback = "as many as keep every edge within 0.1 mm",
+     .offset = offsetof(arguments, clusters)},
 };
 
 // The file's name without folder and ending.
@@ -110,6 +119,7 @@ static ax_status run(const void* given, ax_error* error)
         return export_recipe(a, error);
     if (status == AX_OK)
         status = fabricate_choose(&a->fabricate, &chosen, &profile, error);
+    chosen.sizes = a->clusters;
     if (status == AX_OK)
         status = ax_document_load(a->document, &design, error);
     if (status == AX_OK) {

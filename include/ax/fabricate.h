@@ -165,6 +165,7 @@ typedef struct ax_cut_plan {
     double area, mass;                  // mm2, kg, all panels
     double utilisation;                 // area of panels / area of all sheets
     int labels_outside, labels_dropped; // named beside the panel with a leader; not named at all
+    int sizes;                          // as in the options
     bool in_place;                      // the sheet shows the flat state as it is, moved only
     char title[128], date[32];
 } ax_cut_plan;
@@ -198,6 +199,7 @@ typedef struct ax_fabricate_options {
     double spacing;            // mm, least distance of neighbours that are packed; at least the kerf is kept
     double kerf;               // mm, full width of the beam: outlines grow by half of it, holes shrink. 0: none
     bool clearance;            // prove clearance (takes longer than the rest)
+    int sizes;                 // of panels that the schedule proposes, at most; 0: see ax_cluster_within
     const char* title;         // for notes, NULL: none
     // of the recipe, as it shall be printed, NULL: none. Never the day of export: the same design gives the same bytes
     const char* date;

@@ -55,6 +55,7 @@ static void begin(ax_work* w)
     if (o->joint->work->suit)
         o->joint->work->suit(&plan->material, chosen, plan->joint_values);
     plan->kerf = o->kerf;
+    plan->sizes = o->sizes;
     int profiles;
     plan->profile = o->profile ? o->profile : ax_profiles(&profiles);
     snprintf(plan->title, sizeof plan->title, "%s", o->title ? o->title : "");
