@@ -24,7 +24,8 @@ typedef struct ax_form_start {
 
 // AX_CANNOT_REALISE when the outline holds fewer than 12 panels; AX_USAGE for values out of range.
 ax_status ax_form_make(const ax_form_start* start, ax_form** out, ax_error* error);
-// A form that starts from an exact design: its states, its scale factors, its rim held on the target's boundary curve.
+// A form that starts from an exact design: its states, its scale factors, its rim held where it is, and all hinges held on the target
+// surface, if there is one, by a constraint "target" that may be dropped.
 ax_status ax_form_from_design(const ax_design* design, ax_form** out, ax_error* error);
 void ax_form_free(ax_form* form);
 

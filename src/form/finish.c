@@ -141,6 +141,9 @@ static void make_design(const ax_form* f, ax_design* design)
                           .mouth_min = f->mouth_min * 180 / AX_PI,
                           .border = f->released ? AX_BORDER_RELEASED : AX_BORDER_EQUILATERAL,
                           .scale_ratio = NAN};
+    for (int k = 0; k < f->held_count; ++k)
+        if (f->held[k].kind == AX_HELD_SURFACE && strcmp(f->held[k].name, "target") == 0)
+            design->target = ax_mesh_copy(f->held[k].surface);
 }
 
 void ax_form_snapshot(ax_form* f, bool loaded, ax_design* design)

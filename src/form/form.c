@@ -349,6 +349,19 @@ static int ascending(const void* a, const void* b)
     return (x > y) - (x < y);
 }
 
+// All hinges on the surface that the design was made for, until that is released.
+static ax_status hold_on_target(ax_form* f, const ax_mesh* target, ax_error* error)
+{
+    int n = f->lattice.linkage.hinge_count, *all = AX_NEW(int, n);
+    for (int h = 0; h < n; ++h)
+        all[h] = h;
+    ax_form_constraint c = {
+        .name = "target", .kind = AX_HELD_SURFACE, .count = n, .hinges = all, .weight = 1, .surface = target};
+    ax_status status = ax_form_put_constraint(f, &c, error);
+    ax_free(all);
+    return status;
+}
+
 ax_status ax_form_from_design(const ax_design* design, ax_form** out, ax_error* error)
 {
     *out = NULL;
@@ -398,12 +411,17 @@ ax_status ax_form_from_design(const ax_design* design, ax_form** out, ax_error* 
     ax_status status = count ? ax_form_set_rim(f, 1, &part, error) : AX_OK;
     ax_free(rim);
     ax_free(places);
+    if (design->target.face_count && status == AX_OK)
+        status = hold_on_target(f, &design->target, error);
     f->dynamics.load = design->load;
     f->dynamics.kind = design->load.kind == AX_LOAD_GRAVITY     ? AX_DYNAMICS_GRAVITY
                        : design->load.kind == AX_LOAD_INFLATION ? AX_DYNAMICS_INFLATION
                                                                 : AX_DYNAMICS_EXPAND;
     f->exact = f->settled = true;
-    *out = f;
+    if (status == AX_OK)
+        *out = f;
+    else
+        ax_form_free(f);
     return status;
 }
 
@@ -538,7 +556,8 @@ double ax_form_bulge(const ax_form* f)
     return bulge(f, &level);
 }
 
-// A sheet that bulges against its load would have to snap through: it is mirrored in the level of its rim. Its panels do not mind.
+// A sheet that bulges against its load would have to snap through: it is mirrored in the level of its rim, its panels do not mind. One
+// that is held on something in space stays, and is loaded towards the side to which it bulges: an upright dome hangs upside down.
 static void face_load(ax_form* f)
 {
     if (!ax_form_hangs(f))
@@ -547,6 +566,12 @@ static void face_load(ax_form* f)
     double towards = f->dynamics.kind == AX_DYNAMICS_GRAVITY ? f->dynamics.load.direction[2] : 1, level;
     if (bulge(f, &level) * towards >= 0)
         return;
+    for (int c = 0; c < f->held_count && f->dynamics.kind == AX_DYNAMICS_GRAVITY; ++c)
+        if (f->held[c].kind == AX_HELD_SURFACE) {
+            for (int d = 0; d < 3; ++d)
+                f->dynamics.load.direction[d] = -f->dynamics.load.direction[d];
+            return;
+        }
     for (int h = 0; h < linkage->hinge_count; ++h)
         f->deployed[h][2] = 2 * level - f->deployed[h][2], f->simulated[h][2] = 2 * level - f->simulated[h][2];
 }
