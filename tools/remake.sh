@@ -11,3 +11,9 @@ mkdir -p "$root/docs/pictures"
 "$bin/auxshell" --reference >"$root/docs/command.md"
 "$bin/auxshell" operators --markdown >"$root/docs/operators.md"
 "$bin/make_figure_4" "$root/examples/figure-4.json" "$root/docs/pictures/figure-4.png"
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+for name in hybrid-shell mars-habitat pavilion; do
+  "$bin/auxshell" run "$root/examples/$name.json" -o "$scratch/$name.auxshell" >/dev/null
+  "$bin/auxshell" export "$scratch/$name.auxshell" -o "$root/docs/pictures/$name.png"
+done
