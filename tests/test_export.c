@@ -464,11 +464,11 @@ typedef struct glb {
     const char* data;
 } glb;
 
-static glb export_glb(const ax_design* design, ax_state state)
+static glb export_glb(const ax_design* design, const char* name, ax_state state)
 {
     glb g;
     size_t size;
-    g.bytes = export_design(design, "dome.glb", state, NULL, &size);
+    g.bytes = export_design(design, name, state, NULL, &size);
     uint32_t head[5], data_head[2];
     memcpy(head, g.bytes, sizeof head);
     assert_memory_equal(g.bytes, "glTF", 4);
@@ -546,7 +546,7 @@ static void glb_holds_panels_in_metres_with_y_up(void** state)
     for (int s = 0; s < 3; ++s) {
         ax_design design = sample;
         design.unit = units[s];
-        glb g = export_glb(&design, states[s]);
+        glb g = export_glb(&design, "dome.mesh.glb", states[s]);
         float lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
         for (int i = 0; i < 3 * l->triangle_count; ++i) {
             float local[3], normal[3];
@@ -573,11 +573,85 @@ static void glb_holds_panels_in_metres_with_y_up(void** state)
         }
         json_t* accessor = json_array_get(json_object_get(g.scene, "accessors"), 0);
         for (size_t c = 0; c < 3; ++c) {
-            assert_near(json_real_value(json_array_get(json_object_get(accessor, "min"), c)), lo[c], 0);
-            assert_near(json_real_value(json_array_get(json_object_get(accessor, "max"), c)), hi[c], 0);
+            assert_true((float)json_number_value(json_array_get(json_object_get(accessor, "min"), c)) == lo[c]);
+            assert_true((float)json_number_value(json_array_get(json_object_get(accessor, "max"), c)) == hi[c]);
         }
         free_glb(&g);
     }
+}
+
+// Panel t is a node of its name in a node of its row; its mesh has the corners of the one mesh of .mesh.glb.
+static void glb_tells_panels_apart(void** state)
+{
+    (void)state;
+    const ax_linkage* l = &sample.linkage;
+    glb g = export_glb(&sample, "dome.glb", AX_STATE_DEPLOYED),
+        one = export_glb(&sample, "dome.mesh.glb", AX_STATE_DEPLOYED);
+    json_t *nodes = json_object_get(g.scene, "nodes"), *meshes = json_object_get(g.scene, "meshes");
+    json_t *accessors = json_object_get(g.scene, "accessors"), *row, *panel;
+    assert_int_equal(json_array_size(meshes), l->triangle_count);
+    unsigned char* met = AX_NEW0(unsigned char, l->triangle_count);
+    size_t i, k, met_nodes = 1;
+    assert_true(json_equal(json_object_get(json_array_get(nodes, 0), "rotation"),
+                           json_object_get(json_array_get(json_object_get(one.scene, "nodes"), 0), "rotation")));
+    assert_true(json_equal(json_object_get(json_array_get(nodes, 0), "translation"),
+                           json_object_get(json_array_get(json_object_get(one.scene, "nodes"), 0), "translation")));
+    json_array_foreach(json_object_get(json_array_get(nodes, 0), "children"), i, row)
+    {
+        json_t* row_node = json_array_get(nodes, (size_t)json_integer_value(row));
+        const char* row_name = json_string_value(json_object_get(row_node, "name"));
+        ++met_nodes;
+        json_array_foreach(json_object_get(row_node, "children"), k, panel)
+        {
+            const char* name;
+            int mesh, a[3];
+            char expected[16], start[24];
+            assert_int_equal(json_unpack(json_array_get(nodes, (size_t)json_integer_value(panel)), "{s:s, s:i}", "name",
+                                         &name, "mesh", &mesh),
+                             0);
+            ax_panel_name(l, mesh, expected);
+            assert_string_equal(name, expected);
+            snprintf(start, sizeof start, "row %.*s", (int)strcspn(name, "0123456789"),
+                     name); // names of this design have no minus
+            assert_string_equal(row_name, start);
+            assert_false(met[mesh]++);
+            ++met_nodes;
+            assert_int_equal(json_unpack(json_array_get(meshes, (size_t)mesh), "{s:[{s:{s:i, s:i, s:i}}]}",
+                                         "primitives", "attributes", "POSITION", &a[0], "NORMAL", &a[1], "COLOR_0",
+                                         &a[2]),
+                             0);
+            static const char* const attributes[] = {"POSITION", "NORMAL", "COLOR_0"};
+            for (int c = 0; c < 3; ++c) {
+                int offset, count, type;
+                const char* shape;
+                assert_int_equal(json_unpack(json_array_get(accessors, (size_t)a[c]), "{s:i, s:i, s:i, s:s}",
+                                             "byteOffset", &offset, "count", &count, "componentType", &type, "type",
+                                             &shape),
+                                 0);
+                assert_int_equal(count, 3);
+                for (int corner = 0; corner < 3; ++corner)
+                    assert_memory_equal(g.data + offset + 32 * corner,
+                                        glb_corner(&one, attributes[c], 3 * mesh + corner, type, shape),
+                                        c == 2 ? 8 : 12);
+                for (size_t d = 0; c == 0 && d < 3; ++d) {
+                    json_t* place = json_array_get(accessors, (size_t)a[0]);
+                    float lo = INFINITY, hi = -INFINITY, x[3];
+                    for (int corner = 0; corner < 3; ++corner) {
+                        memcpy(x, g.data + offset + 32 * corner, sizeof x);
+                        lo = fminf(lo, x[d]), hi = fmaxf(hi, x[d]);
+                    }
+                    assert_true((float)json_number_value(json_array_get(json_object_get(place, "min"), d)) == lo);
+                    assert_true((float)json_number_value(json_array_get(json_object_get(place, "max"), d)) == hi);
+                }
+            }
+        }
+    }
+    assert_int_equal(met_nodes, json_array_size(nodes));
+    for (int t = 0; t < l->triangle_count; ++t)
+        assert_true(met[t]);
+    ax_free(met);
+    free_glb(&g);
+    free_glb(&one);
 }
 
 static void glb_keeps_its_precision_far_from_the_origin(void** state)
@@ -588,7 +662,7 @@ static void glb_keeps_its_precision_far_from_the_origin(void** state)
     design.deployed = ax_copy(sample.deployed, n, sizeof *sample.deployed);
     for (size_t h = 0; h < n; ++h)
         design.deployed[h][0] += 4e5, design.deployed[h][1] += 5e6; // a place on a national grid
-    glb g = export_glb(&design, AX_STATE_DEPLOYED);
+    glb g = export_glb(&design, "dome.mesh.glb", AX_STATE_DEPLOYED);
     for (int i = 0; i < 3 * sample.linkage.triangle_count; i += 3) {
         float a[3], b[3];
         memcpy(a, glb_corner(&g, "POSITION", i, 5126, "VEC3"), sizeof a);
@@ -952,6 +1026,7 @@ int main(void)
         cmocka_unit_test(stl_holds_panels_with_their_normals),
         cmocka_unit_test(ply_holds_panels_with_scale_and_colour),
         cmocka_unit_test(glb_holds_panels_in_metres_with_y_up),
+        cmocka_unit_test(glb_tells_panels_apart),
         cmocka_unit_test(glb_keeps_its_precision_far_from_the_origin),
         cmocka_unit_test(png_is_a_picture_of_the_state),
         cmocka_unit_test(svg_has_true_size_for_every_unit),
