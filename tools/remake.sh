@@ -13,6 +13,8 @@ mkdir -p "$root/docs/pictures"
 "$bin/make_figure_4" "$root/examples/figure-4.json" "$root/docs/pictures/figure-4.png"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+"$bin/auxshell" design "$root/examples/surfaces/spherical_cap.obj" -o "$scratch/dome.auxshell" --triangles 100 --units m --load gravity >/dev/null
+"$bin/auxshell" export "$scratch/dome.auxshell" -o "$root/examples/grasshopper/dome.json" >/dev/null
 for name in hybrid-shell mars-habitat pavilion; do
   "$bin/auxshell" run "$root/examples/$name.json" -o "$scratch/$name.auxshell" >/dev/null
   "$bin/auxshell" export "$scratch/$name.auxshell" -o "$root/docs/pictures/$name.png"
