@@ -5,6 +5,7 @@ import json
 import math
 import os
 import random
+import re
 import signal
 import socket
 import sqlite3
@@ -14,8 +15,8 @@ import unittest
 
 import judge_design
 import support.tap
-from support.command import QUICK, SURFACES, CommandCase
-from support.studio import EXACT, MOVING, SETTLED, Closed, Page, Socket, Studio
+from support.command import QUICK, ROOT, SURFACES, CommandCase
+from support.studio import EXACT, SECTIONS, SETTLED, Closed, Page, Socket, Studio
 
 DOME = [{"op": "start_circle", "radius": 2, "triangles": 300, "scale": 1.3},
         {"op": "gradient_radial", "radius": 1.9, "inner": 1.7, "outer": 1.25},
@@ -91,6 +92,19 @@ class Protocol(StudioCase):
         page.rest()
         self.assertGreater(page.frames, frames)
         self.assertNotIn("triangles", page.last.sections)  # the linkage is the same
+
+    def test_the_protocol_page_names_every_command_and_section(self):
+        page = (ROOT / "docs/protocol.md").read_text()
+        tables = [path.read_text() for path in (ROOT / "src/studio").glob("job_*.c")]
+        commands = {name for text in tables for name in re.findall(r'^    \{"(\w+)", (?:true|false), ', text, re.MULTILINE)}
+        hub = (ROOT / "src/studio/hub.c").read_text()
+        commands |= set(re.findall(r'strcmp\(m->action, "(\w+)"\)', hub)) | set(re.findall(r'\{"(\w+)", \w+\}', hub))
+        self.assertLess({"apply", "preview", "join", "export", "variant_look", "close"}, commands)
+        for name in commands:
+            self.assertRegex(page, rf"\| (`\w+`, )?`{name}`[ ,]", name)
+        rows = set(map(int, re.findall(r"\d+", " ".join(re.findall(r"^\| ([\d, ]+) \| ", page, re.MULTILINE)))))
+        for number in SECTIONS:
+            self.assertIn(number, rows)
 
     def test_hello_describes_every_operator(self):
         hello = self.page(self.start(), joined=False).hello

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { ITERATIONS = 10, SLICE = 5 }; // a visual update, unless the hand would wait for it longer than `patience`
+enum { ITERATIONS = 10, SLICE = 2 }; // a visual update, unless the hand would wait for it longer than `patience`
 static const double patience = 0.02;
 static const double frame_seconds = 1.0 / 60, rest_seconds = 1.0 / 15, report_seconds = 0.5, progress_seconds = 0.25;
 static const double rest_move = 1e-4; // of the sheet's spacing per update: nothing a screen shows moves any more
@@ -441,7 +441,7 @@ static void start_moving(desk* d)
 static void advance(desk* d)
 {
     double start = ax_seconds();
-    for (int done = 0; done < ITERATIONS && (!done || ax_seconds() - start < patience / 2); done += SLICE)
+    for (int done = 0; done < ITERATIONS && (!done || ax_seconds() - start < patience); done += SLICE)
         ax_form_iterate(d->live, SLICE);
     d->update_time = ax_seconds() - start;
     double move = show_moving(d);

@@ -14,7 +14,7 @@ static const struct {
     const char *name, *file, *title, *doc;
 } examples[] = {
     {"welcome", "welcome.json", "Pavilion",
-     "A shell over an oval: painted higher at one end, on an elliptical rim, inflated."},
+     "A shell over an oval, higher at one end, on an elliptical rim, inflated."},
     {"figure-4", "figure-4.json", "Figure 4", "Painted, hung, expanded, smoothed, and given a circle to stand on."},
 };
 enum { EXAMPLES = sizeof examples / sizeof *examples };

@@ -160,7 +160,7 @@ class Page(Socket):
     def rest(self, seconds=60):
         """Until the state is at rest and its report is in."""
         self.until(lambda: self.frames and not self.last.flags & MOVING and "report" in self.events
-                   and self.last.revision >= self.events["report"]["revision"] and self.events["status"]["solver"] == "idle", seconds)
+                   and self.last.revision >= self.events["report"]["revision"] and self.events.get("status", {}).get("solver") == "idle", seconds)
 
 
 class Studio:
