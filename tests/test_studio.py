@@ -49,6 +49,7 @@ class StudioCase(CommandCase):
         self.addCleanup(page.close)
         if joined:
             self.agree(page.ask("join"))
+            page.until(lambda: page.frames)
             page.rest()
         return page
 
@@ -114,6 +115,9 @@ class Protocol(StudioCase):
         self.assertTrue(fields["radius"]["required"])
         self.assertEqual((fields["scale"]["kind"], fields["scale"]["lo"], fields["scale"]["hi"]), ("number", 1, 2))
         self.assertEqual(fields["unit"]["choices"], ["mm", "cm", "m"])
+        examples = {example["name"]: example for example in hello["examples"]}
+        self.assertLess({"welcome", "figure-4"}, set(examples))
+        self.assertTrue(all(example["doc"] for example in examples.values()), examples)
         self.assertIn(".svg", [exporter["ending"] for exporter in hello["exporters"]])
 
     def test_previews_show_and_leave_no_trace(self):
@@ -401,6 +405,17 @@ class Documents(StudioCase):
         two.until(lambda: len(two.events["document"]["steps"]) == 5)
         self.agree(two.ask("close", discard=True))
         self.assertEqual(self.drafts(), [])
+
+    def test_examples_open_and_the_first_is_exact(self):
+        studio = self.start(steps=None)
+        page = self.page(studio)
+        self.assertTrue(page.last.flags & EXACT)
+        self.assertEqual(page.events["report"]["checks"][-1]["severity"], "pass")
+        self.disagree("bad_input", "no example", page.ask("new", example="../tests/x"))
+        if not QUICK:
+            self.agree(page.ask("new", example="hybrid-shell"))
+            page.until(lambda: page.events["document"]["name"] == "hybrid-shell")
+            self.assertIn("arch1", [selection["name"] for selection in page.events["document"]["selections"]])
 
     def test_what_nobody_edited_is_not_kept(self):
         studio = self.start()

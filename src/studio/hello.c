@@ -5,47 +5,68 @@
 #include "studio/files.h"
 #include "studio/message.h"
 
+#include <ctype.h>
+#include <dirent.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-// Recipes and documents among the project's examples, which the installed program finds beside itself.
-static const struct {
-    const char *name, *file, *title, *doc;
-} examples[] = {
-    {"welcome", "welcome.json", "Pavilion",
-     "A shell over an oval, higher at one end, on an elliptical rim, inflated."},
-    {"figure-4", "figure-4.json", "Figure 4", "Painted, hung, expanded, smoothed, and given a circle to stand on."},
-};
-enum { EXAMPLES = sizeof examples / sizeof *examples };
+static const char ending[] = ".json";
 
+// Examples are the recipes in the project's folder of that name.
 const char* hello_first_example(void)
 {
-    return examples[0].name;
+    return "welcome";
 }
 
 char* hello_example_path(const char* name)
 {
-    for (int k = 0; k < EXAMPLES; ++k)
-        if (strcmp(examples[k].name, name) == 0) {
-            size_t size = strlen(AX_EXAMPLES_PATH) + strlen(examples[k].file) + 2;
-            char* path = ax_alloc(size, 1);
-            snprintf(path, size, "%s/%s", AX_EXAMPLES_PATH, examples[k].file);
-            return path;
-        }
+    size_t size = strlen(AX_EXAMPLES_PATH) + strlen(name) + sizeof ending + 1;
+    char* path = ax_alloc(size, 1);
+    snprintf(path, size, "%s/%s%s", AX_EXAMPLES_PATH, name, ending);
+    if (files_name_is_plain(name) && access(path, R_OK) == 0)
+        return path;
+    ax_free(path);
     return NULL;
+}
+
+static int is_recipe(const struct dirent* entry)
+{
+    size_t length = strlen(entry->d_name);
+    return length >= sizeof ending && strcmp(entry->d_name + length - strlen(ending), ending) == 0;
+}
+
+// "mars-habitat" is "Mars habitat"; what it is about says its own note.
+static json_t* example(const char* name)
+{
+    char title[NAME_LENGTH + 1];
+    snprintf(title, sizeof title, "%s", name);
+    title[0] = (char)toupper((unsigned char)title[0]);
+    for (char* c = title; *c; ++c)
+        if (*c == '-')
+            *c = ' ';
+    char* path = hello_example_path(name);
+    json_t* recipe = path ? json_load_file(path, 0, NULL) : NULL;
+    const char* note = json_string_value(json_object_get(recipe, "note"));
+    json_t* row = json_pack("{s:s, s:s, s:s}", "name", name, "title", title, "doc", note ? note : "");
+    json_decref(recipe);
+    ax_free(path);
+    return row;
 }
 
 static json_t* example_list(void)
 {
     json_t* list = json_array();
-    for (int k = 0; k < EXAMPLES; ++k) {
-        char* path = hello_example_path(examples[k].name);
-        if (access(path, R_OK) == 0)
-            json_array_append_new(list, json_pack("{s:s, s:s, s:s}", "name", examples[k].name, "title",
-                                                  examples[k].title, "doc", examples[k].doc));
-        ax_free(path);
+    struct dirent** entries;
+    int count = scandir(AX_EXAMPLES_PATH, &entries, is_recipe, alphasort);
+    for (int k = 0; k < count; ++k) {
+        entries[k]->d_name[strlen(entries[k]->d_name) - strlen(ending)] = 0;
+        json_array_append_new(list, example(entries[k]->d_name));
+        free(entries[k]);
     }
+    if (count >= 0)
+        free(entries);
     return list;
 }
 
