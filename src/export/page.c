@@ -60,26 +60,28 @@ static bool shows(const ax_cut_plan* plan, const ax_cut_path* path, const double
     return lo[0] <= view[2] && hi[0] >= view[0] && lo[1] <= view[3] && hi[1] >= view[1];
 }
 
+enum { STROKE = 50 }; // paths
+
 void ax_page_draw(cairo_t* cairo, const ax_cut_plan* plan, const ax_cut_sheet* sheet)
 {
     double view[4]; // what a page of tiles shows is a small part
     cairo_clip_extents(cairo, &view[0], &view[1], &view[2], &view[3]);
-    for (int i = sheet->first; i < sheet->first + sheet->count; ++i) {
+    int held = 0; // paths that wait for their pen: a stroke of many costs cairo little more than one of one
+    for (int i = sheet->first, end = sheet->first + sheet->count; i < end; ++i) {
         const ax_cut_item* item = plan->items + i;
         const ax_profile_pen* pen = plan->profile->pens + item->operation;
-        if (!pen->used)
-            continue;
-        bool any = false;
-        for (int k = item->first; k < item->first + item->count; ++k)
+        for (int k = item->first; k < item->first + item->count && pen->used; ++k)
             if (shows(plan, plan->paths + k, view)) {
                 trace(cairo, plan, plan->paths + k);
-                any = true;
+                ++held;
             }
-        if (!any)
+        bool last = i + 1 == end || plan->items[i + 1].operation != item->operation;
+        if (held == 0 || (!last && held < STROKE))
             continue;
         cairo_set_source_rgb(cairo, pen->rgb[0] / 255.0, pen->rgb[1] / 255.0, pen->rgb[2] / 255.0);
         cairo_set_line_width(cairo, pen->stroke);
         cairo_stroke(cairo);
+        held = 0;
     }
 }
 
