@@ -28,7 +28,7 @@ static int tear_down(void** state)
 static ax_cut_plan make(const char* joint, const char* sheet)
 {
     ax_fabricate_options o = ax_fabricate_options_default();
-    ax_cut_plan plan;
+    ax_cut_plan plan = {0};
     ax_error error;
     o.clearance = false;
     if (ax_fabricate_set_joint(&o, joint, &error) != AX_OK ||

@@ -1325,7 +1325,8 @@ static void check_curve(const ax_curve* curve, double end, double size, uint64_t
         if (floor(t - step) != floor(t + step) && end > 1)
             continue;
         ax_curve_derivatives(curve, t, first, second);
-        ax_curve_point(curve, t - step, before), ax_curve_point(curve, t, other), ax_curve_point(curve, t + step, after);
+        ax_curve_point(curve, t - step, before), ax_curve_point(curve, t, other),
+            ax_curve_point(curve, t + step, after);
         for (int i = 0; i < 3; ++i) {
             assert_near(first[i], (after[i] - before[i]) / (2 * step), 1e-4 * size);
             assert_near(second[i], (after[i] - 2 * other[i] + before[i]) / (step * step), 1e-3 * size);

@@ -283,7 +283,8 @@ static void constraints_hold(void** state)
         int chosen[6], count = 0, wanted = kind == AX_HELD_LINE ? 3 : 6; // hinges across the dome
         double places[6][3];
         for (int h = 0; h < view.linkage->hinge_count && count < wanted; ++h)
-            if (fabs(view.sheet[h][1] - 0.3) < 0.6 * view.spacing && (count == 0 || view.sheet[h][0] > view.sheet[chosen[count - 1]][0]))
+            if (fabs(view.sheet[h][1] - 0.3) < 0.6 * view.spacing &&
+                (count == 0 || view.sheet[h][0] > view.sheet[chosen[count - 1]][0]))
                 chosen[count++] = h;
         for (int k = 0; k < count; ++k) {
             memcpy(places[k], view.deployed[chosen[k]], sizeof places[k]);
@@ -304,7 +305,8 @@ static void constraints_hold(void** state)
         settle(form);
         ax_form_report after = measured(form);
         assert_int_equal(after.held_count, 1);
-        if (!(before.held[0].residual > 1e-4) || !(after.held[0].residual < 0.3 * before.held[0].residual || kind == AX_HELD_FAIR))
+        if (!(before.held[0].residual > 1e-4) ||
+            !(after.held[0].residual < 0.3 * before.held[0].residual || kind == AX_HELD_FAIR))
             fail_msg("%s: %g before, %g after", ax_held_kind_name((ax_held_kind)kind), before.held[0].residual,
                      after.held[0].residual);
         assert_true(after.held[0].residual < before.held[0].residual);
@@ -337,7 +339,8 @@ static void profile(int triangles, double out[2])
         if (r < 0.15)
             sum[0] += view.simulated[h][2], ++count[0];
         if (fabs(r - 0.8) < 0.06)
-            sum[1] += view.simulated[h][2], sum[2] += hypot(view.simulated[h][0], view.simulated[h][1]) * 0.8 / r, ++count[1];
+            sum[1] += view.simulated[h][2], sum[2] += hypot(view.simulated[h][0], view.simulated[h][1]) * 0.8 / r,
+                ++count[1];
     }
     out[0] = sum[1] / count[1] - sum[0] / count[0];
     out[1] = sum[2] / count[1];

@@ -47,7 +47,8 @@ ax_design_options ax_design_options_default(void); // inflation at 100 Pa, 4 kg/
 typedef enum ax_freedom { AX_HELD_FAST, AX_FREE_ALONG, AX_FREE_ACROSS } ax_freedom;
 typedef struct ax_slide {
     ax_freedom freedom;
-    double axis[3]; // unit: the tangent of a curve, along which it slides, or the normal of a plane, across which it does
+    double
+        axis[3]; // unit: the tangent of a curve, along which it slides, or the normal of a plane, across which it does
 } ax_slide;
 
 // Every figure of the report. Lengths "over L" are divided by the mean triangle edge L; NaN where a state is missing.

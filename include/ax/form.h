@@ -76,15 +76,16 @@ void ax_form_set_mouth_min(ax_form* form, double angle);
 void ax_form_release_border(ax_form* form, bool released);
 
 typedef enum ax_dynamics_kind {
-    AX_DYNAMICS_NONE,      // flat state only; the deployed one keeps its place
-    AX_DYNAMICS_EXPAND,    // every hole fully open: the natural shape
-    AX_DYNAMICS_GRAVITY,   // hangs, or inflates, with the sizes it has (adapt: after an expansion that adapts them)
+    AX_DYNAMICS_NONE,    // flat state only; the deployed one keeps its place
+    AX_DYNAMICS_EXPAND,  // every hole fully open: the natural shape
+    AX_DYNAMICS_GRAVITY, // hangs, or inflates, with the sizes it has (adapt: after an expansion that adapts them)
     AX_DYNAMICS_INFLATION,
 } ax_dynamics_kind;
 
 typedef struct ax_form_dynamics {
     ax_dynamics_kind kind;
-    ax_load load;    // kind, direction, density or pressure, for reports and the exact stage: the shape does not depend on its size
+    ax_load
+        load; // kind, direction, density or pressure, for reports and the exact stage: the shape does not depend on its size
     bool adapt;      // panel sizes may give way a little so that holes open fully within rim and constraints
     double give;     // how easily they do: 0 not at all, default 3, at most 100
     bool adopt;      // finishing takes the loaded state as the deployed one: what hangs is the design
@@ -102,18 +103,18 @@ typedef enum ax_held_kind {
     AX_HELD_CURVE,       // on `curve`
     AX_HELD_FIXED,       // at `places`
     AX_HELD_SURFACE,     // on `surface`
-    AX_HELD_MIRROR,      // pairs (2 hinges each), mirrored in the plane `point`, `direction`; a hinge may pair with itself
-    AX_HELD_ROTATION,    // orbits (`order` hinges each), about the axis `point`, `direction`
-    AX_HELD_FAIR,        // kagome lines through these hinges bend evenly
+    AX_HELD_MIRROR,   // pairs (2 hinges each), mirrored in the plane `point`, `direction`; a hinge may pair with itself
+    AX_HELD_ROTATION, // orbits (`order` hinges each), about the axis `point`, `direction`
+    AX_HELD_FAIR,     // kagome lines through these hinges bend evenly
 } ax_held_kind;
 const char* ax_held_kind_name(ax_held_kind kind);
 
 typedef struct ax_form_constraint {
     const char* name; // unique; the report and later edits call it so
     ax_held_kind kind;
-    int count;         // of hinges; of mirror and rotation: all orbits one after the other
+    int count; // of hinges; of mirror and rotation: all orbits one after the other
     const int* hinges;
-    double weight;     // > 0; 1 is as stiff as a panel
+    double weight; // > 0; 1 is as stiff as a panel
     double point[3], direction[3];
     int order;                 // AX_HELD_ROTATION
     const double (*places)[3]; // AX_HELD_FIXED
@@ -143,14 +144,15 @@ ax_status ax_form_settle(ax_form* form, int iterations, const ax_progress* progr
 void ax_form_restart(ax_form* form, double height);
 
 typedef struct ax_finish {
-    bool exact;                             // every state exact; otherwise `reason` tells
-    double flat_moved_rms, flat_moved_max;  // how far the exact solve moved the states, over L
+    bool exact;                            // every state exact; otherwise `reason` tells
+    double flat_moved_rms, flat_moved_max; // how far the exact solve moved the states, over L
     double deployed_moved_rms, deployed_moved_max;
     char reason[512];
 } ax_finish;
 // The exact joint solve and, if there is a load, exact deployment: a design like one from a target surface. The form takes
 // over the exact states. AX_CANNOT_REALISE when the form is not near a solution (the report says where).
-ax_status ax_form_finish(ax_form* form, const ax_progress* progress, ax_design* design, ax_finish* finish, ax_error* error);
+ax_status ax_form_finish(ax_form* form, const ax_progress* progress, ax_design* design, ax_finish* finish,
+                         ax_error* error);
 
 // ---- what comes of it --------------------------------------------------------------------------------------------------------
 
@@ -165,9 +167,10 @@ typedef struct ax_form_view {
     const double (*flat)[2];      // hinge places
     const double (*deployed)[3];  // fully open as far as rim and constraints allow
     const double (*simulated)[3]; // under the load; NULL without one
-    const double* opening;        // per hole: area over that of the cyclic polygon of its sides; of the simulated state if there is one
-    const double* material;       // per hinge: largest multiplier over L; above 2 and rising: too little material here
-    unsigned revision;            // rises with every change
+    const double*
+        opening; // per hole: area over that of the cyclic polygon of its sides; of the simulated state if there is one
+    const double* material; // per hinge: largest multiplier over L; above 2 and rising: too little material here
+    unsigned revision;      // rises with every change
 } ax_form_view;
 ax_form_view ax_form_look(ax_form* form);
 
@@ -182,7 +185,7 @@ int ax_form_underlays(const ax_form* form, const char*** names, const ax_mesh** 
 typedef enum ax_severity { AX_SEVERITY_NOTE, AX_SEVERITY_WARNING, AX_SEVERITY_FAILURE } ax_severity;
 typedef struct ax_finding {
     ax_severity severity;
-    const char* kind; // "mouth", "overlap", "slack", "tight", "overhang", "rim", "constraint", "scale", "clearance"
+    const char* kind;    // "mouth", "overlap", "slack", "tight", "overhang", "rim", "constraint", "scale", "clearance"
     int triangle, hinge; // where; -1 if nowhere in particular
     double value, limit;
     char text[160]; // a sentence for people, with figures and units
@@ -201,17 +204,17 @@ typedef struct ax_form_report {
     bool settled; // residuals small and at rest
     bool exact;   // since ax_form_finish nothing was edited
     int iterations;
-    double edge;  // L, the mean panel edge
+    double edge;                                        // L, the mean panel edge
     double flat_error, deployed_error, simulated_error; // largest |edge / its length - 1|; NaN without the state
     double mouth_min;                                   // radians
     int mouth_hinge;
-    int flipped, overlap_pairs; // in the flat state; overlaps deeper than 1e-6 L
+    int flipped, overlap_pairs;                                      // in the flat state; overlaps deeper than 1e-6 L
     double realised_min, realised_max, scale_off_rms, scale_off_max; // |realised - prescribed|
     int scale_off_triangle;
     double opening_min, opening_mean;
-    double overhang;          // share of panels that look down: no height field
-    double curvature_max;     // painted curvature summed over the worst disc, radians; above 2 pi the surface turns over
-    double growth;            // of the flat sheet by collisions, 1 = none
+    double overhang;      // share of panels that look down: no height field
+    double curvature_max; // painted curvature summed over the worst disc, radians; above 2 pi the surface turns over
+    double growth;        // of the flat sheet by collisions, 1 = none
     double simulated_rms, simulated_max; // simulated against deployed, over L
     int held_count;
     ax_held_figure* held; // rim parts, then constraints

@@ -56,8 +56,9 @@ typedef struct ax_operator_type {
     void (*defaults)(void* a); // fills zeroed arguments; NULL: zeros are the defaults. NaN in a number: not given
     // What must hold between fields: NULL, or what is wrong in words, and *field the one to blame (-1: the whole). NULL: nothing.
     const char* (*check)(const void* arguments, int* field);
-    bool starts;  // makes the form: only at the first place
-    bool settles; // the form is settled after it, for as many iterations as its integer field "steps" says (0: until at rest)
+    bool starts; // makes the form: only at the first place
+    bool
+        settles; // the form is settled after it, for as many iterations as its integer field "steps" says (0: until at rest)
     // On failure the form is as it was.
     ax_status (*apply)(const ax_operator_context* context, const void* arguments, ax_error* error);
 } ax_operator_type;
@@ -96,8 +97,8 @@ ax_status ax_recipe_replace(ax_recipe* recipe, int k, const char* json, ax_error
 void ax_recipe_remove(ax_recipe* recipe, int k);
 
 // Applies operator k to *form, then settles if its type says so. On failure *form is as it was.
-ax_status ax_recipe_apply(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress, ax_form** form,
-                          ax_error* error);
+ax_status ax_recipe_apply(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress,
+                          ax_form** form, ax_error* error);
 // The same, and keeps what an operator that finishes made in *finished.
 ax_status ax_recipe_apply_finished(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress,
                                    ax_form** form, ax_finished* finished, ax_error* error);

@@ -308,7 +308,7 @@ static void draw_step(strips* s, int step)
             ax_booklet_page(b, NULL, s->heading, s->line);
             s->y = box.y;
         }
-        char text[256], part[32] = "";
+        char text[400], part[32] = "";
         step_words w = words_of(b, step);
         if (parts > 1)
             snprintf(part, sizeof part, ", part %d of %d", p + 1, parts);

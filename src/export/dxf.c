@@ -288,7 +288,8 @@ static unsigned count_entities(const ax_cut_plan* plan, const ax_cut_sheet* shee
 ax_status ax_dxf_write(const ax_cut_plan* plan, int k, ax_dxf_version version, const char* path, ax_error* error)
 {
     const ax_cut_sheet* sheet = k == plan->sheet_count ? &plan->overview : plan->sheets + k;
-    dxf d = {.plan = plan, .modern = version == AX_DXF_R2000, .handle = FIRST_HANDLE, .out = ax_export_open(path, error)};
+    dxf d = {
+        .plan = plan, .modern = version == AX_DXF_R2000, .handle = FIRST_HANDLE, .out = ax_export_open(path, error)};
     if (!d.out)
         return AX_FAILED;
     header(&d, sheet, FIRST_HANDLE + count_entities(plan, sheet));

@@ -97,7 +97,8 @@ static int cover(const work* w, double width, int* size_of)
 // Narrowest intervals, at most `count`, that cover the mean edges: exact where panels are equilateral.
 static int divide_by_mean(const work* w, int count, int* size_of)
 {
-    double lo = 0, hi = (w->order[w->n - 1].mean - w->order[0].mean) * (1 + 1e-9); // one interval, whatever rounding does
+    double lo = 0,
+           hi = (w->order[w->n - 1].mean - w->order[0].mean) * (1 + 1e-9); // one interval, whatever rounding does
     for (int i = 0; i < 60 && cover(w, lo, NULL) > count; ++i) {
         double middle = (lo + hi) / 2;
         if (cover(w, middle, NULL) > count)

@@ -178,7 +178,8 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
     list_places(f, places, holds);
     int planes;
     ax_joint_plane* plane = list_planes(f, &planes);
-    double(*flat)[2] = ax_copy(f->flat, (size_t)n, sizeof *flat), (*deployed)[3] = ax_copy(f->deployed, (size_t)n, sizeof *deployed);
+    double(*flat)[2] = ax_copy(f->flat, (size_t)n, sizeof *flat),
+    (*deployed)[3] = ax_copy(f->deployed, (size_t)n, sizeof *deployed);
     for (int k = 0; k < f->rim_count; ++k) // fixed hinges are fixed where they were asked to be
         for (int i = 0; i < f->rim[k].count && f->rim[k].kind == AX_RIM_FIXED; ++i)
             memcpy(deployed[f->rim[k].hinges[i]], f->rim[k].places[i], sizeof *deployed);
@@ -191,12 +192,14 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
                                 .scale_max = 2};
     ax_joint_result joint = {0};
     ax_progress_part first, second;
-    ax_status status = ax_joint_solve(&problem, flat, deployed, ax_progress_within(&first, progress, 0, 0.4), &joint, error);
+    ax_status status =
+        ax_joint_solve(&problem, flat, deployed, ax_progress_within(&first, progress, 0, 0.4), &joint, error);
     if (status == AX_OK && !joint.converged)
-        status = ax_fail(error, AX_CANNOT_REALISE,
-                         "The flat and the deployed state cannot be made congruent here: %.1e is left after %d steps, and places "
-                         "are missed by %.1e edges. Let the form settle further, release the border, or ask less of it.",
-                         joint.congruence, joint.steps, joint.off_place);
+        status = ax_fail(
+            error, AX_CANNOT_REALISE,
+            "The flat and the deployed state cannot be made congruent here: %.1e is left after %d steps, and places "
+            "are missed by %.1e edges. Let the form settle further, release the border, or ask less of it.",
+            joint.congruence, joint.steps, joint.off_place);
     if (status == AX_OK) {
         moved a = distance(n, 2, f->flat[0], flat[0], unit);
         double(*before)[3] = ax_copy(f->deployed, (size_t)n, sizeof *before);
@@ -239,7 +242,8 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
             design->load.kind = AX_LOAD_NONE;
             ax_design_measure(design);
             if (ax_form_hangs(f))
-                snprintf(finish->reason, sizeof finish->reason, "Fewer than three hinges are held, so nothing can hang.");
+                snprintf(finish->reason, sizeof finish->reason,
+                         "Fewer than three hinges are held, so nothing can hang.");
         }
         moved b = distance(n, 3, before[0], f->deployed[0], unit);
         ax_free(before);

@@ -168,7 +168,8 @@ static void list_lines(ax_form* f)
     for (int t = 0; t < linkage->triangle_count; ++t)
         for (int k = 0; k < 3; ++k) { // an edge is the middle of one row
             int b = linkage->triangles[t][k], c = linkage->triangles[t][(k + 1) % 3];
-            int a = follow(linkage, (const int(*)[2])f->holder, c, b), d = follow(linkage, (const int(*)[2])f->holder, b, c);
+            int a = follow(linkage, (const int(*)[2])f->holder, c, b),
+                d = follow(linkage, (const int(*)[2])f->holder, b, c);
             if (d >= 0) {
                 int* to = f->bends[f->bend_count++];
                 to[0] = b, to[1] = c, to[2] = d;
@@ -246,10 +247,10 @@ void ax_form_free(ax_form* f)
         ax_free((void*)f->underlay_names[k]);
         ax_mesh_free(f->underlays + k);
     }
-    void* blocks[] = {f->centres,   f->mouths,         f->lines, f->bends, f->holder,      f->holes,   f->prescribed, f->rim,
-                      f->held,      f->sets,           f->underlays,  f->flat,    f->deployed,   f->simulated,
-                      f->side,      f->underlay_names, f->clearances, f->pending, f->realised,   f->opening,
-                      f->material,  f->scratch,        f->lanes};
+    void* blocks[] = {f->centres,    f->mouths,    f->lines,    f->bends,          f->holder,     f->holes,
+                      f->prescribed, f->rim,       f->held,     f->sets,           f->underlays,  f->flat,
+                      f->deployed,   f->simulated, f->side,     f->underlay_names, f->clearances, f->pending,
+                      f->realised,   f->opening,   f->material, f->scratch,        f->lanes};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_free(f);
@@ -283,8 +284,8 @@ ax_status ax_form_make(const ax_form_start* start, ax_form** out, ax_error* erro
     double spacing = start->edge > 0 ? 2 * start->edge : sqrt(4 * fabs(area) / (sqrt(3) * fmax(start->triangles, 1)));
     double expected = 4 * fabs(area) / (sqrt(3) * spacing * spacing);
     if (!(expected >= 0.5 * LEAST_TRIANGLES && expected <= MOST_TRIANGLES))
-        return ax_fail(error, AX_USAGE, "This outline would hold about %.0f triangles; %d to %d can be handled.", expected,
-                       LEAST_TRIANGLES, MOST_TRIANGLES);
+        return ax_fail(error, AX_USAGE, "This outline would hold about %.0f triangles; %d to %d can be handled.",
+                       expected, LEAST_TRIANGLES, MOST_TRIANGLES);
 
     // counter-clockwise; a lattice point in the middle, so that symmetric outlines get symmetric linkages
     int n = start->outline_count;
@@ -315,8 +316,7 @@ ax_status ax_form_make(const ax_form_start* start, ax_form** out, ax_error* erro
     ax_form_twist(f);
     for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
         for (int c = 0; c < 3; ++c)
-            f->deployed[h][c] =
-                c < 2 ? f->centre[c] + start->scale * (f->lattice.hinges[h][c] - f->centre[c]) : 0;
+            f->deployed[h][c] = c < 2 ? f->centre[c] + start->scale * (f->lattice.hinges[h][c] - f->centre[c]) : 0;
     memcpy(f->simulated, f->deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
     *out = f;
     return AX_OK;
@@ -368,7 +368,8 @@ ax_status ax_form_from_design(const ax_design* design, ax_form** out, ax_error* 
     const ax_linkage* from = &design->linkage;
     if (from->triangle_count < LEAST_TRIANGLES)
         return ax_fail(error, AX_USAGE, "A design of %d triangles is too small.", from->triangle_count);
-    ax_lattice lattice = {.linkage = ax_linkage_copy(from), .hinges = ax_calloc((size_t)from->hinge_count, sizeof *lattice.hinges)};
+    ax_lattice lattice = {.linkage = ax_linkage_copy(from),
+                          .hinges = ax_calloc((size_t)from->hinge_count, sizeof *lattice.hinges)};
     // the spacing that the scale factors refer to: 2 L / lambda, the same for all but for the measuring of lambda
     double* spacing = AX_NEW(double, from->triangle_count);
     for (int t = 0; t < from->triangle_count; ++t) {
@@ -613,7 +614,8 @@ static ax_status check_constraint(const ax_form* f, const ax_form_constraint* c,
                            c->hinges[i], f->lattice.linkage.hinge_count - 1);
     int each = c->kind == AX_HELD_MIRROR ? 2 : (c->kind == AX_HELD_ROTATION ? c->order : 1);
     if (each < 1 || each > AX_MOST_POINTS || c->count % each)
-        return ax_fail(error, AX_USAGE, "Constraint '%s' has %d hinges, no multiple of its order %d.", c->name, c->count, each);
+        return ax_fail(error, AX_USAGE, "Constraint '%s' has %d hinges, no multiple of its order %d.", c->name,
+                       c->count, each);
     return c->kind == AX_HELD_CURVE ? check_shape(&c->curve, error) : AX_OK;
 }
 

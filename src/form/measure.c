@@ -12,8 +12,8 @@
 #include <string.h>
 
 // Limits of what a settled form keeps, and above which people are told.
-static const double settled_error = 1e-2, overlap_depth = 1e-6, slack_opening = 0.95, tight_multiplier = 2, rim_gap = 0.02,
-                    scale_gap = 0.1;
+static const double settled_error = 1e-2, overlap_depth = 1e-6, slack_opening = 0.95, tight_multiplier = 2,
+                    rim_gap = 0.02, scale_gap = 0.1;
 
 double ax_form_sides_mean(const ax_form* f)
 {
@@ -332,7 +332,8 @@ static void measure_held(ax_form* f, ax_form_report* r)
         *to = (ax_held_figure){.name = "boundary", .kind = rim_names[f->rim[k].kind], .count = f->rim[k].count};
         to->residual = rim_residual(f, k, x);
         to->multiplier =
-            s && g->rim ? largest_multiplier(s, g->rim[k], f->rim[k].kind == AX_RIM_FIXED ? f->rim[k].count : 1) / mean : 0;
+            s && g->rim ? largest_multiplier(s, g->rim[k], f->rim[k].kind == AX_RIM_FIXED ? f->rim[k].count : 1) / mean
+                        : 0;
     }
     for (int k = 0; k < f->held_count; ++k) {
         const ax_form_constraint* c = f->held + k;
@@ -357,7 +358,8 @@ static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kin
 {
     r->findings = ax_realloc(r->findings, (size_t)r->finding_count + 1, sizeof *r->findings);
     ax_finding* finding = r->findings + r->finding_count++;
-    *finding = (ax_finding){.severity = severity, .kind = kind, .triangle = -1, .hinge = -1, .value = value, .limit = limit};
+    *finding =
+        (ax_finding){.severity = severity, .kind = kind, .triangle = -1, .hinge = -1, .value = value, .limit = limit};
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(finding->text, sizeof finding->text, format, arguments);
@@ -425,16 +427,18 @@ static void find_problems(ax_form* f, ax_form_report* r)
         char a[16], b[16];
         ax_panel_name(linkage, pair[0][0], a);
         ax_panel_name(linkage, pair[0][1], b);
-        tell(r, AX_SEVERITY_FAILURE, "overlap", r->overlap_pairs, 0, "%d pairs of panels overlap in the flat state, %s and %s first.",
-             r->overlap_pairs, a, b)
+        tell(r, AX_SEVERITY_FAILURE, "overlap", r->overlap_pairs, 0,
+             "%d pairs of panels overlap in the flat state, %s and %s first.", r->overlap_pairs, a, b)
             ->triangle = pair[0][0];
     }
     if (r->flipped)
-        tell(r, AX_SEVERITY_FAILURE, "flipped", r->flipped, 0, "%d panels are turned over in the flat state.", r->flipped);
+        tell(r, AX_SEVERITY_FAILURE, "flipped", r->flipped, 0, "%d panels are turned over in the flat state.",
+             r->flipped);
     if (r->mouth_min < f->mouth_min - 0.1 / degree)
-        tell(r, r->mouth_min < 0 ? AX_SEVERITY_FAILURE : AX_SEVERITY_WARNING, "mouth", r->mouth_min * degree, f->mouth_min * degree,
-             "The smallest mouth is %.1f degrees, %.1f are asked: lower the scale factors there.", r->mouth_min * degree,
-             f->mouth_min * degree)
+        tell(r, r->mouth_min < 0 ? AX_SEVERITY_FAILURE : AX_SEVERITY_WARNING, "mouth", r->mouth_min * degree,
+             f->mouth_min * degree,
+             "The smallest mouth is %.1f degrees, %.1f are asked: lower the scale factors there.",
+             r->mouth_min * degree, f->mouth_min * degree)
             ->hinge = r->mouth_hinge;
     if (r->scale_off_max > scale_gap) {
         char name[16];
@@ -451,13 +455,14 @@ static void find_problems(ax_form* f, ax_form_report* r)
             least = f->opening[k] < f->opening[least] ? k : least;
         }
         tell(r, AX_SEVERITY_WARNING, "slack", r->opening_min, slack_opening,
-             "%d of %d holes are slack, the slackest is %.0f %% open: too much material there.", slack, linkage->hole_count,
-             100 * r->opening_min)
+             "%d of %d holes are slack, the slackest is %.0f %% open: too much material there.", slack,
+             linkage->hole_count, 100 * r->opening_min)
             ->hinge = linkage->hole_hinges[linkage->hole_start[least]];
     }
     int folds = moved ? ax_form_folds(f, (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed)) : 0;
     if (folds)
-        tell(r, AX_SEVERITY_WARNING, "folded", folds, 0, "%d pairs of neighbouring panels are folded onto each other.", folds);
+        tell(r, AX_SEVERITY_WARNING, "folded", folds, 0, "%d pairs of neighbouring panels are folded onto each other.",
+             folds);
     if (moved) {
         int tight = 0;
         for (int h = 0; h < linkage->hinge_count; ++h)
@@ -471,14 +476,15 @@ static void find_problems(ax_form* f, ax_form_report* r)
     }
     for (int k = 0; k < r->held_count; ++k)
         if (r->held[k].residual > rim_gap * r->edge && strcmp(r->held[k].kind, "fairness") != 0)
-            tell(r, AX_SEVERITY_WARNING, "held", r->held[k].residual, rim_gap * r->edge, "'%s' (%s) is missed by up to %.3g %s.",
-                 r->held[k].name, r->held[k].kind, r->held[k].residual, unit);
+            tell(r, AX_SEVERITY_WARNING, "held", r->held[k].residual, rim_gap * r->edge,
+                 "'%s' (%s) is missed by up to %.3g %s.", r->held[k].name, r->held[k].kind, r->held[k].residual, unit);
     if (r->curvature_max > 2 * AX_PI)
         tell(r, AX_SEVERITY_WARNING, "overhang", r->curvature_max, 2 * AX_PI,
              "The painted factors sum to %.0f degrees of curvature, above 360: fully open the surface turns over.",
              r->curvature_max * degree);
     else if (moved && r->overhang > 0)
-        tell(r, AX_SEVERITY_NOTE, "overhang", r->overhang, 0, "%.1f %% of the panels look down: no height field.", 100 * r->overhang);
+        tell(r, AX_SEVERITY_NOTE, "overhang", r->overhang, 0, "%.1f %% of the panels look down: no height field.",
+             100 * r->overhang);
     for (int k = 0; k < f->underlay_count; ++k) {
         ax_closest* tree = ax_closest_make(f->underlays + k);
         const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
@@ -490,8 +496,9 @@ static void find_problems(ax_form* f, ax_form_report* r)
                 least = d, at = h;
         }
         if (least < f->clearances[k])
-            tell(r, AX_SEVERITY_FAILURE, "clearance", least, f->clearances[k], "The shell comes within %.3g %s of '%s'; %.3g are asked.",
-                 least, unit, f->underlay_names[k], f->clearances[k])
+            tell(r, AX_SEVERITY_FAILURE, "clearance", least, f->clearances[k],
+                 "The shell comes within %.3g %s of '%s'; %.3g are asked.", least, unit, f->underlay_names[k],
+                 f->clearances[k])
                 ->hinge = at;
         ax_closest_free(tree);
     }
@@ -505,7 +512,8 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
     const double(*flat)[2] = (const double(*)[2])f->flat;
     bool moved = f->dynamics.kind != AX_DYNAMICS_NONE, hangs = ax_form_hangs(f);
     ax_form_look(f);
-    *r = (ax_form_report){.exact = f->exact, .iterations = f->iterations, .growth = f->growth, .scale_off_triangle = -1};
+    *r =
+        (ax_form_report){.exact = f->exact, .iterations = f->iterations, .growth = f->growth, .scale_off_triangle = -1};
     r->edge = ax_form_sides_mean(f);
     r->flat_error = ax_form_flat_error(f);
     r->deployed_error = moved ? ax_form_deployed_error(f) : NAN;
@@ -518,7 +526,8 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
     r->realised_min = INFINITY, r->realised_max = -INFINITY;
     for (int t = 0; t < linkage->triangle_count; ++t) {
         double off = fabs(f->realised[t] - f->prescribed[t]);
-        r->realised_min = fmin(r->realised_min, f->realised[t]), r->realised_max = fmax(r->realised_max, f->realised[t]);
+        r->realised_min = fmin(r->realised_min, f->realised[t]),
+        r->realised_max = fmax(r->realised_max, f->realised[t]);
         r->scale_off_rms += off * off / linkage->triangle_count;
         if (off > r->scale_off_max)
             r->scale_off_max = off, r->scale_off_triangle = t;
@@ -544,7 +553,8 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
     find_problems(f, r);
     r->settled = true;
     for (int k = 0; k < r->finding_count; ++k)
-        r->settled = r->settled && !(r->findings[k].severity == AX_SEVERITY_FAILURE && strcmp(r->findings[k].kind, "clearance") != 0);
+        r->settled = r->settled &&
+                     !(r->findings[k].severity == AX_SEVERITY_FAILURE && strcmp(r->findings[k].kind, "clearance") != 0);
     f->settled = r->settled;
 }
 

@@ -12,8 +12,9 @@
 #include <string.h>
 
 // Weights, with panels at 1. docs/form-finding.md tells how each was found.
-static const double hole_weight = 0.1, fair_weight = 0.1, hang_fair_weight = 0.005, bend_weight = 0.01, hang_bend_weight = 0.003, rim_weight = 0.3, hang_rim_weight = 1,
-                    centre_weight = 0.3, proximal = 1e-5, load_strain = 0.1, multiplier_cap = 2;
+static const double hole_weight = 0.1, fair_weight = 0.1, hang_fair_weight = 0.005, bend_weight = 0.01,
+                    hang_bend_weight = 0.003, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
+                    proximal = 1e-5, load_strain = 0.1, multiplier_cap = 2;
 static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
 enum { RESIZE_EVERY = 25, STANDARD_ITERATIONS = 400, PATIENCE = 5, REST_CHECK = 25 };
 static const double rest_error = 1e-4, rest_step = 1e-5, good_error = 5e-3;
@@ -88,7 +89,8 @@ static void add_holders(ax_form* f, ax_solver* s, int first, bool hang, ax_form_
             int pieces = (part->count + AX_MOST_POINTS - 1) / AX_MOST_POINTS;
             for (int i = 0; i < pieces; ++i) {
                 int from = (int)((long)part->count * i / pieces), to = (int)((long)part->count * (i + 1) / pieces);
-                int group = add(s, "ordered_on_curve", to - from, 1, part->hinges + from, first, rim, &f->rim_holder[k].place);
+                int group =
+                    add(s, "ordered_on_curve", to - from, 1, part->hinges + from, first, rim, &f->rim_holder[k].place);
                 groups->rim[k] = i ? groups->rim[k] : group;
             }
         }
@@ -105,7 +107,8 @@ static void add_holders(ax_form* f, ax_solver* s, int first, bool hang, ax_form_
         case AX_HELD_LINE:
         case AX_HELD_CIRCLE: {
             const char* type = c->kind == AX_HELD_PLANE ? "plane" : (c->kind == AX_HELD_LINE ? "line" : "circle");
-            group = add(s, type, c->count < AX_MOST_POINTS ? c->count : AX_MOST_POINTS, 1, c->hinges, first, c->weight, NULL);
+            group = add(s, type, c->count < AX_MOST_POINTS ? c->count : AX_MOST_POINTS, 1, c->hinges, first, c->weight,
+                        NULL);
             break;
         }
         case AX_HELD_PLANE_GIVEN:
@@ -412,8 +415,9 @@ static void measure_sides(ax_form* f)
     for (int t = 0; t < linkage->triangle_count; ++t)
         for (int k = 0; k < 3; ++k) {
             int a = linkage->triangles[t][(k + 1) % 3], b = linkage->triangles[t][(k + 2) % 3];
-            f->side[t][k] = shares ? 0.5 * (ax_distance2(f->flat[a], f->flat[b]) + ax_distance3(f->deployed[a], f->deployed[b]))
-                                   : ax_form_side(f, t);
+            f->side[t][k] =
+                shares ? 0.5 * (ax_distance2(f->flat[a], f->flat[b]) + ax_distance3(f->deployed[a], f->deployed[b]))
+                       : ax_form_side(f, t);
         }
 }
 
@@ -528,8 +532,9 @@ void ax_form_iterate(ax_form* f, int iterations)
 void ax_form_restart(ax_form* f, double height)
 {
     int n = f->lattice.linkage.hinge_count;
-    double up = ax_form_hangs(f) ? (f->dynamics.kind == AX_DYNAMICS_GRAVITY && f->dynamics.load.direction[2] < 0 ? -1 : 1)
-                                 : (ax_form_bulge(f) < 0 ? -1 : 1);
+    double up = ax_form_hangs(f)
+                    ? (f->dynamics.kind == AX_DYNAMICS_GRAVITY && f->dynamics.load.direction[2] < 0 ? -1 : 1)
+                    : (ax_form_bulge(f) < 0 ? -1 : 1);
     for (int h = 0; h < n; ++h) {
         double r = ax_distance2(f->lattice.hinges[h], f->centre) / f->radius;
         double bulge = height * f->radius * fmax(0, 1 - r * r) * up;
@@ -587,8 +592,8 @@ static void forget(snapshot* s)
 
 // Iterates one of the two until it rests or `limit` is reached; with `patient` a few times as long while edges are still off.
 // False if cancelled.
-static bool run(ax_form* f, bool shape, int limit, bool patient, const ax_progress* progress, const char* stage, double lo,
-                double hi)
+static bool run(ax_form* f, bool shape, int limit, bool patient, const ax_progress* progress, const char* stage,
+                double lo, double hi)
 {
     int most = patient ? PATIENCE * limit : limit;
     for (int done = 0; done < most;) {

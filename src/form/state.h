@@ -32,13 +32,13 @@ struct ax_form {
     ax_unit unit;
 
     // derived from the lattice
-    double centre[2], radius; // of the sheet
-    double (*centres)[2];     // of the panels, on the sheet
-    int (*holder)[2];                  // panels of every hinge, -1: none
-    int mouth_count, (*mouths)[3];     // hinge, next, previous: the smaller angle of every inner hinge
-    int line_count, (*lines)[4];       // four hinges in a row on kagome lines
-    int bend_count, (*bends)[3];       // three in a row
-    int hole_count, *holes;            // those with six hinges, by number
+    double centre[2], radius;      // of the sheet
+    double (*centres)[2];          // of the panels, on the sheet
+    int (*holder)[2];              // panels of every hinge, -1: none
+    int mouth_count, (*mouths)[3]; // hinge, next, previous: the smaller angle of every inner hinge
+    int line_count, (*lines)[4];   // four hinges in a row on kagome lines
+    int bend_count, (*bends)[3];   // three in a row
+    int hole_count, *holes;        // those with six hinges, by number
 
     // asked
     double* prescribed;
@@ -58,7 +58,7 @@ struct ax_form {
 
     // states
     double (*flat)[2], (*deployed)[3], (*simulated)[3]; // simulated: always allocated
-    double (*side)[3];                                  // edge k of each panel, opposite corner k: what the load pass keeps
+    double (*side)[3]; // edge k of each panel, opposite corner k: what the load pass keeps
     double growth;
     bool exact, settled;
     unsigned revision;
@@ -72,7 +72,7 @@ struct ax_form {
     int load; // of the hanging solver
     ax_holder *rim_holder, *held_holder;
     int rim_holders, held_holders; // of when they were made: rim and constraints may have changed since
-    bool stale; // the solvers no longer fit what is asked
+    bool stale;                    // the solvers no longer fit what is asked
     double* pending; // multipliers that were loaded and go into the next solvers: shape, then hang; NULL: none
     size_t pending_count;
 

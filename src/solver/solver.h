@@ -158,9 +158,9 @@ ax_settled ax_solver_settle(ax_solver* solver, const ax_settle* settle, const ax
 typedef struct ax_solver_counters {
     int analyses, factorisations, iterations;
     double factor_entries;
-    size_t bytes;                         // held by the solver
-    size_t bytes_per_solve;               // read by one global solve
-    double seconds_local, seconds_global; // since the solver was made
+    size_t bytes;                              // held by the solver
+    size_t bytes_per_solve;                    // read by one global solve
+    double seconds_local, seconds_global;      // since the solver was made
     double seconds_prepare, seconds_factorise; // the latter within the former
     double seconds_anderson;
     int jumps_refused; // by the safeguard of the acceleration

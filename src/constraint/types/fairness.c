@@ -20,8 +20,10 @@ static void project(const ax_lane* restrict block, const ax_place* place, int po
 
 const ax_constraint_type ax_constraint_fairness = {
     .name = "fairness",
-    .doc = "Pulls a hinge to the middle between its neighbours on a kagome line (three points), or four to even steps and curvature.",
-    .reference = "Welch and Witkin 1994, Free-form shape design using triangulated surfaces; Moreton and Sequin 1992, Functional "
+    .doc = "Pulls a hinge to the middle between its neighbours on a kagome line (three points), or four to even steps "
+           "and curvature.",
+    .reference = "Welch and Witkin 1994, Free-form shape design using triangulated surfaces; Moreton and Sequin 1992, "
+                 "Functional "
                  "optimization for fair surface design (variation of curvature)",
     .pattern = AX_ROWS_SUM,
     .least_points = 3,

@@ -76,7 +76,8 @@ static void project(const ax_lane* restrict block, const ax_place* place, int po
 const ax_constraint_type ax_constraint_ordered_on_curve = {
     .name = "ordered_on_curve",
     .doc = "Keeps points on a curve, in their order along it (nearest in the curve's parameter).",
-    .reference = "Ayer et al. 1955, An Empirical Distribution Function for Sampling with Incomplete Information (pooling)",
+    .reference =
+        "Ayer et al. 1955, An Empirical Distribution Function for Sampling with Incomplete Information (pooling)",
     .pattern = AX_ROWS_POINTS,
     .least_points = 1,
     .most_points = AX_MOST_POINTS,

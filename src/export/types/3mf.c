@@ -34,7 +34,8 @@ static void put_panel(FILE* out, const ax_design* design, int t, const double (*
                 p[c] = mm * places[h[k]][c] + (side - 0.5) * thickness * normal[c];
             fprintf(out, "<vertex x=\"%.5f\" y=\"%.5f\" z=\"%.5f\"/>\n", p[0], p[1], p[2]);
         }
-    fputs("</vertices><triangles>\n<triangle v1=\"0\" v2=\"2\" v3=\"1\"/>\n<triangle v1=\"3\" v2=\"4\" v3=\"5\"/>\n", out);
+    fputs("</vertices><triangles>\n<triangle v1=\"0\" v2=\"2\" v3=\"1\"/>\n<triangle v1=\"3\" v2=\"4\" v3=\"5\"/>\n",
+          out);
     for (int k = 0; k < 3; ++k) {
         int next = (k + 1) % 3;
         fprintf(out, "<triangle v1=\"%d\" v2=\"%d\" v3=\"%d\"/>\n<triangle v1=\"%d\" v2=\"%d\" v3=\"%d\"/>\n", k, next,
@@ -82,8 +83,8 @@ static ax_status write_3mf(const ax_design* design, ax_state state, const ax_exp
     double thickness = (options->fabricate ? options->fabricate : &standard)->material.thickness;
     zipFile zip = zipOpen(path, APPEND_STATUS_CREATE);
     if (!zip)
-        return ax_fail(error, AX_FAILED, "%s could not be written. Is there room on the disk, and may the folder be written to?",
-                       path);
+        return ax_fail(error, AX_FAILED,
+                       "%s could not be written. Is there room on the disk, and may the folder be written to?", path);
     size_t size;
     char* model = compose(design, state, thickness, &size);
     bool sound = put_part(zip, "[Content_Types].xml", content_types, strlen(content_types)) &&

@@ -1,7 +1,8 @@
 // DXF R2000 of a cut plan.
 #include "export/dxf.h"
 
-static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, int sheet, const char* path, ax_error* error)
+static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, int sheet, const char* path,
+                             ax_error* error)
 {
     (void)design;
     return ax_dxf_write(plan, sheet, AX_DXF_R2000, path, error);
@@ -10,7 +11,8 @@ static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, i
 const ax_export_type ax_export_dxf = {
     .ending = ".dxf",
     .name = "DXF drawing",
-    .doc = "The flat panels at true size in mm, a layer for each operation, closed polylines; AutoCAD 2000 and later read it.",
+    .doc = "The flat panels at true size in mm, a layer for each operation, closed polylines; AutoCAD 2000 and later "
+           "read it.",
     .default_state = AX_STATE_FLAT,
     .states = {[AX_STATE_DEFAULT] = true, [AX_STATE_FLAT] = true},
     .write_sheet = write_sheet,

@@ -3,7 +3,8 @@
 
 #include <cairo-pdf.h>
 
-static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, int sheet, const char* path, ax_error* error)
+static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, int sheet, const char* path,
+                             ax_error* error)
 {
     (void)design, (void)sheet;
     cairo_surface_t* surface = ax_page_open(plan, path, 100, 100);

@@ -1,7 +1,8 @@
 // DXF R12 of a cut plan.
 #include "export/dxf.h"
 
-static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, int sheet, const char* path, ax_error* error)
+static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, int sheet, const char* path,
+                             ax_error* error)
 {
     (void)design;
     return ax_dxf_write(plan, sheet, AX_DXF_R12, path, error);
