@@ -2,7 +2,7 @@
 # Makes what is drawn or written by the program itself again: example surfaces, README pictures, command reference.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
-install_packages run
+install_packages run test
 build release
 bin=$root/build/release/bin
 mkdir -p "$root/docs/pictures"
@@ -15,6 +15,11 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 "$bin/auxshell" design "$root/examples/surfaces/spherical_cap.obj" -o "$scratch/dome.auxshell" --triangles 100 --units m --load gravity >/dev/null
 "$bin/auxshell" export "$scratch/dome.auxshell" -o "$root/examples/grasshopper/dome.json" >/dev/null
+"$bin/auxshell" design "$root/examples/surfaces/kidney_dome.obj" -o "$scratch/kidney.auxshell" --triangles 400 --units m >/dev/null
+"$bin/auxshell" export "$scratch/kidney.auxshell" -o "$scratch/kidney.plan.pdf" --joint ring --material plywood-3 >/dev/null
+for page in 2:layout 4:steps 7:frame; do
+  pdftoppm -r 60 -png -singlefile -f "${page%:*}" "$scratch/kidney.plan.pdf" "$root/docs/pictures/plan-${page#*:}"
+done
 for name in hybrid-shell mars-habitat pavilion; do
   "$bin/auxshell" run "$root/examples/$name.json" -o "$scratch/$name.auxshell" >/dev/null
   "$bin/auxshell" export "$scratch/$name.auxshell" -o "$root/docs/pictures/$name.png"

@@ -254,7 +254,7 @@ static void say_load(listing* l)
         say(l, "Load", "gravity, %.3g kg/m2, towards (%.3g, %.3g, %.3g)", d->load.density, d->load.direction[0],
             d->load.direction[1], d->load.direction[2]);
     else if (d->load.kind == AX_LOAD_INFLATION)
-        say(l, "Load", "inflation, %.4g Pa", d->load.pressure);
+        say(l, "Load", d->load.pressure >= 100 ? "inflation, %.0f Pa" : "inflation, %.3g Pa", d->load.pressure);
     else
         say(l, "Load", "none given");
     if (d->simulated) {

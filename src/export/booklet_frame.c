@@ -84,16 +84,17 @@ static void put_dimensions(const drawing* d)
         double unit[2] = {side * normal[0] / length, side * normal[1] / length};
         if (d->unrolled)
             unit[0] = 0, unit[1] = -1;
-        if (ax_distance2(at, last) > 6) {
+        bool room = ax_distance2(at, last) > (d->unrolled ? 7 : 6);
+        if (room) {
             snprintf(text, sizeof text, "S%d", d->c->first + k + 1);
             ax_booklet_text(b, at[0] + 4 * unit[0], at[1] + 4 * unit[1] + 0.9, 2.5, AX_CENTRE, text);
             memcpy(last, at, sizeof last);
         }
         ax_booklet_ink(b, 0.25);
         snprintf(text, sizeof text, d->unrolled ? "%+.0f" : "%.1f", d->unrolled ? p->place[2] : p->chord);
-        if (d->unrolled)
+        if (d->unrolled && room)
             ax_booklet_text(b, at[0], at[1] + 4, 2, AX_CENTRE, text);
-        else if (k < span_count(d) && length > 1.15 * ax_booklet_text_width(b, 2, text)) {
+        if (!d->unrolled && k < span_count(d) && length > 1.15 * ax_booklet_text_width(b, 2, text)) {
             double turn = atan2(to[1] - at[1], to[0] - at[0]);
             if (cos(turn) < 0)
                 turn += AX_PI;

@@ -78,7 +78,7 @@ static void draw_layout(ax_booklet* b, double scale, const double shift[2], cons
         widen(bounds, (const double(*)[2])c);
         if (bounds[0] <= box->x + box->width && bounds[2] >= box->x && bounds[1] <= box->y + box->height &&
             bounds[3] >= box->y)
-            ax_booklet_panel(b, t, (const double(*)[2])c, legible ? AX_PANEL_ALWAYS_NAMED : AX_PANEL_PLAIN);
+            ax_booklet_panel(b, t, (const double(*)[2])c, legible ? AX_PANEL_ALWAYS_NAMED : AX_PANEL_NAMED);
     }
     for (int k = 0; k < b->assembly.step_count; ++k)
         put_step_number(b, k, scale, shift);
@@ -111,23 +111,23 @@ static void draw_details(ax_booklet* b, double scale)
 
 void ax_booklet_layout(ax_booklet* b)
 {
-    char line[256], text[32];
-    double bounds[4];
+    char line[320], text[32];
+    double bounds[4], legible = ax_booklet_naming_scale(b, AX_BOOKLET_LEGIBLE);
     ax_box box = ax_booklet_body(), inner = {box.x + 8, box.y, box.width - 8, box.height};
     flat_bounds(b, 1, bounds);
     double scale = ax_booklet_scale(&inner, bounds[2] - bounds[0], bounds[3] - bounds[1], text);
     double turn = -atan2(b->assembly.along[1], b->assembly.along[0]) * 180 / AX_PI;
     snprintf(line, sizeof line,
-             "Seen from above, %s; rows run from left to right (the flat state turned by %.1f degrees). Red: %s.%s",
+             "Seen from above, %s; rows run from left to right (the flat state turned by %.1f degrees). Red: %s.%s%s",
              text, turn,
              b->assembly.by_pieces ? "number of the step that adds the piece" : "number of the step that adds the row",
-             b->plan->joint->two_layers ? " Darker panels lie on top." : "");
+             b->plan->joint->two_layers ? " Darker panels lie on top." : "",
+             legible > scale ? " All names are on the next pages." : "");
     ax_booklet_page(b, "Flat layout", "Flat layout", line);
     double shift[2] = {inner.x + inner.width / 2 - scale * (bounds[0] + bounds[2]) / 2,
                        inner.y + inner.height / 2 - scale * (bounds[1] + bounds[3]) / 2};
     draw_layout(b, scale, shift, &box);
     ax_booklet_end_page(b);
-    double legible = ax_booklet_naming_scale(b, AX_BOOKLET_LEGIBLE);
     if (legible > scale)
         draw_details(b, ax_booklet_naming_scale(b, name_size));
 }
