@@ -1,6 +1,7 @@
 #include "document/history.h"
 
 #include "document/design_rows.h"
+#include "document/schema.h"
 #include "document/sql.h"
 
 #include <limits.h>
@@ -132,6 +133,29 @@ int ax_history_find(sqlite3* db, int64_t parent, const char* json, int64_t* step
     *step = ax_sql_next(row, &result) ? sqlite3_column_int64(row, 0) : -1;
     sqlite3_finalize(row);
     return result;
+}
+
+// Of the step too: a form under another's number would be a sound one all the same.
+static int64_t digest_checkpoint(int64_t step, const void* form, size_t size)
+{
+    return (int64_t)ax_schema_digest(ax_schema_digest(0, &step, sizeof step), form, size);
+}
+
+const void* ax_history_checkpoint(sqlite3* db, int64_t step, size_t* size, sqlite3_stmt** row)
+{
+    int result = SQLITE_OK;
+    *row = ax_sql_ask(db, "SELECT form, digest FROM checkpoint WHERE step = ?1", "i", step);
+    if (!ax_sql_next(*row, &result))
+        return NULL;
+    const void* form = sqlite3_column_blob(*row, 0);
+    *size = (size_t)sqlite3_column_bytes(*row, 0);
+    return form && digest_checkpoint(step, form, *size) == sqlite3_column_int64(*row, 1) ? form : NULL;
+}
+
+int ax_history_keep(sqlite3* db, int64_t step, const void* form, size_t size)
+{
+    return ax_sql_run(db, "INSERT OR REPLACE INTO checkpoint VALUES(?1, ?2, ?3)", "ibi", step, form, size,
+                      digest_checkpoint(step, form, size));
 }
 
 int ax_history_add_step(sqlite3* db, int64_t parent, const char* json, int64_t* step)

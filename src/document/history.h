@@ -29,11 +29,16 @@ int ax_history_operator(sqlite3* db, int64_t step, char** json);
 // The step with this operator after `parent`; -1 if there is none.
 int ax_history_find(sqlite3* db, int64_t parent, const char* json, int64_t* step);
 
+// The form that is kept after a step, borrowed until the statement *row is finalised, which the caller does. NULL if there is none or
+// it is not what was written.
+const void* ax_history_checkpoint(sqlite3* db, int64_t step, size_t* size, sqlite3_stmt** row);
+
 // ---- within a transaction ---------------------------------------------------------------------------------------------------
 
 int ax_history_add_step(sqlite3* db, int64_t parent, const char* json, int64_t* step);
 // Makes `present` a moment and the present one, and drops those behind it with all that only they needed.
 int ax_history_add_moment(sqlite3* db, const ax_present* present, const char* words, double time);
 int ax_history_go(sqlite3* db, int moment);
+int ax_history_keep(sqlite3* db, int64_t step, const void* form, size_t size);
 // Keeps checkpoints and designs of the present, of the last moments and of every tenth one before, within bounds.
 int ax_history_thin(sqlite3* db, int now);

@@ -31,7 +31,7 @@ static const char* const steps[] = {
     "NULL,"
     " at INTEGER NOT NULL, words TEXT NOT NULL, time REAL, failure TEXT);"
     "CREATE TABLE session(now INTEGER NOT NULL, folder TEXT NOT NULL);"
-    "CREATE TABLE checkpoint(step INTEGER PRIMARY KEY, form BLOB NOT NULL);"
+    "CREATE TABLE checkpoint(step INTEGER PRIMARY KEY, form BLOB NOT NULL, digest INTEGER NOT NULL);"
     "INSERT INTO moment VALUES(0, 0, 0, 0, 0, 'Start', NULL, NULL);"
     "INSERT INTO session VALUES(0, '');"
     "DROP TABLE seal;"
@@ -82,7 +82,7 @@ bool ax_schema_matches(const ax_schema* schema, sqlite3* db, int version)
 }
 
 // Eight bytes at a time; multiply and shift as in splitmix64, which is enough against accidents. It is no signature.
-static uint64_t mix(uint64_t state, const void* data, size_t bytes)
+uint64_t ax_schema_digest(uint64_t state, const void* data, size_t bytes)
 {
     const char* at = data;
     state += bytes;
@@ -101,16 +101,16 @@ static uint64_t mix_row(uint64_t state, sqlite3_stmt* row)
 {
     for (int c = 0; c < sqlite3_column_count(row); ++c) {
         int type = sqlite3_column_type(row, c);
-        state = mix(state, &type, sizeof type);
+        state = ax_schema_digest(state, &type, sizeof type);
         if (type == SQLITE_INTEGER) {
             sqlite3_int64 value = sqlite3_column_int64(row, c);
-            state = mix(state, &value, sizeof value);
+            state = ax_schema_digest(state, &value, sizeof value);
         } else if (type == SQLITE_FLOAT) {
             double value = sqlite3_column_double(row, c);
-            state = mix(state, &value, sizeof value);
+            state = ax_schema_digest(state, &value, sizeof value);
         } else if (type != SQLITE_NULL) {
             const void* value = sqlite3_column_blob(row, c); // before its length, as SQLite asks
-            state = mix(state, value, (size_t)sqlite3_column_bytes(row, c));
+            state = ax_schema_digest(state, value, (size_t)sqlite3_column_bytes(row, c));
         }
     }
     return state;
@@ -119,7 +119,7 @@ static uint64_t mix_row(uint64_t state, sqlite3_stmt* row)
 // Sum over the rows, so that the order in which SQLite finds them does not matter.
 static int digest_table(sqlite3* db, const char* name, uint64_t* digest)
 {
-    uint64_t seed = mix(0, name, strlen(name));
+    uint64_t seed = ax_schema_digest(0, name, strlen(name));
     *digest = 0;
     char* sql = sqlite3_mprintf("SELECT * FROM \"%w\"", name);
     int result = SQLITE_OK;

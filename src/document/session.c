@@ -166,14 +166,11 @@ static void forget(attempt* a)
 // The checkpoint after a step, if there is a sound one.
 static bool fetch_checkpoint(ax_session* s, int64_t step, attempt* a)
 {
-    int result = SQLITE_OK;
-    sqlite3_stmt* row = ax_sql_ask(s->database.view, "SELECT form FROM checkpoint WHERE step = ?1", "i", step);
-    if (ax_sql_next(row, &result)) {
-        const void* bytes = sqlite3_column_blob(row, 0);
-        size_t size = (size_t)sqlite3_column_bytes(row, 0);
-        if (bytes && ax_form_load(bytes, size, &a->form, NULL) == AX_OK)
-            keep(a, ax_copy(bytes, size, 1), size, true);
-    }
+    size_t size;
+    sqlite3_stmt* row;
+    const void* bytes = ax_history_checkpoint(s->database.view, step, &size, &row);
+    if (bytes && ax_form_load(bytes, size, &a->form, NULL) == AX_OK)
+        keep(a, ax_copy(bytes, size, 1), size, true);
     sqlite3_finalize(row);
     return a->form != NULL;
 }
@@ -312,8 +309,7 @@ static int write_states(ax_session* s, const attempt* a)
     int result = SQLITE_OK;
     for (int k = 0; k < a->kept_count && result == SQLITE_OK; ++k)
         if (!a->kept[k].stored)
-            result = ax_sql_run(db, "INSERT OR REPLACE INTO checkpoint VALUES(?1, ?2)", "ib", s->ids[a->kept[k].at],
-                                a->kept[k].bytes, a->kept[k].size);
+            result = ax_history_keep(db, s->ids[a->kept[k].at], a->kept[k].bytes, a->kept[k].size);
     if (result == SQLITE_OK && a->finished.made)
         result = ax_design_store(db, s->ids[a->at], &a->finished.design);
     return result;
