@@ -1,6 +1,7 @@
 // Documents: nothing is lost, nothing half-written is ever seen, and no file makes the program fall over.
 #include "ax/document.h"
 
+#include "base/clock.h"
 #include "base/random.h"
 #include "document/load.h"
 #include "support/compare.h"
@@ -427,7 +428,10 @@ static void a_killed_save_leaves_the_old_or_the_new_document(void** state)
     (void)state;
     ax_design changed = sample;
     changed.mouth_min = 33;
+    double start = ax_seconds(); // a save and another one
+    save(path, &changed);
     save(path, &sample);
+    double duration = 1e6 * (ax_seconds() - start);
     ax_random random = {7};
     int old = 0;
     for (int round = 0; round < 40; ++round) {
@@ -436,7 +440,7 @@ static void a_killed_save_leaves_the_old_or_the_new_document(void** state)
             for (int k = 0;; ++k)
                 if (ax_document_save(path, k % 2 ? &sample : &changed, NULL) != AX_OK)
                     _exit(1);
-        usleep((useconds_t)ax_random_uniform(&random, 500, 20000));
+        usleep((useconds_t)ax_random_uniform(&random, 0.1 * duration, 3 * duration));
         int ended;
         assert_int_equal(waitpid(child, &ended, WNOHANG), 0); // still saving
         kill(child, SIGKILL);

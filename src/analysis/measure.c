@@ -126,6 +126,8 @@ int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], doub
     cell *= 1.2;
     // no more cells than a few per triangle: one huge triangle only makes them coarser
     cell = fmax(cell, sqrt((hi[0] - lo[0]) * (hi[1] - lo[1]) / (4.0 * count)));
+    if (!(cell > 0)) // all of it at one point
+        cell = 1;
     int columns = (int)((hi[0] - lo[0]) / cell) + 1, rows = (int)((hi[1] - lo[1]) / cell) + 1;
     int *start = AX_NEW0(int, columns*rows + 1), *place = AX_NEW(int, count), *sorted = AX_NEW(int, count);
     for (int t = 0; t < count; ++t) {

@@ -492,7 +492,7 @@ static void order_part(const ax_linkage* linkage, ax_rim_part* part)
     ax_free(order);
 }
 
-ax_status ax_form_set_rim(ax_form* f, int count, const ax_rim_part* parts, ax_error* error)
+ax_status ax_form_check_rim(const ax_form* f, int count, const ax_rim_part* parts, ax_error* error)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
     unsigned char* taken = AX_NEW0(unsigned char, linkage->hinge_count);
@@ -510,6 +510,13 @@ ax_status ax_form_set_rim(ax_form* f, int count, const ax_rim_part* parts, ax_er
         }
     }
     ax_free(taken);
+    return status;
+}
+
+ax_status ax_form_set_rim(ax_form* f, int count, const ax_rim_part* parts, ax_error* error)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    ax_status status = ax_form_check_rim(f, count, parts, error);
     if (status != AX_OK)
         return status;
     ax_rim_part* copies = AX_NEW0(ax_rim_part, count + 1);
@@ -598,7 +605,7 @@ const ax_form_dynamics* ax_form_get_dynamics(const ax_form* f)
     return &f->dynamics;
 }
 
-static ax_status check_constraint(const ax_form* f, const ax_form_constraint* c, ax_error* error)
+ax_status ax_form_check_constraint(const ax_form* f, const ax_form_constraint* c, ax_error* error)
 {
     if (!c->name || !*c->name || strlen(c->name) > 63)
         return ax_fail(error, AX_USAGE, "A constraint needs a name of 1 to 63 letters.");
@@ -621,7 +628,7 @@ static ax_status check_constraint(const ax_form* f, const ax_form_constraint* c,
 
 ax_status ax_form_put_constraint(ax_form* f, const ax_form_constraint* constraint, ax_error* error)
 {
-    ax_status status = check_constraint(f, constraint, error);
+    ax_status status = ax_form_check_constraint(f, constraint, error);
     if (status != AX_OK)
         return status;
     ax_form_constraint copy = ax_form_constraint_copy(constraint);

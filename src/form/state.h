@@ -106,6 +106,10 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit);
 // Something asked has changed: solvers that no longer fit go; `forget` their multipliers too.
 void ax_form_changed(ax_form* form, bool rebuild, bool forget);
 
+// AX_USAGE unless these can be held, wherever they come from.
+ax_status ax_form_check_rim(const ax_form* form, int count, const ax_rim_part* parts, ax_error* error);
+ax_status ax_form_check_constraint(const ax_form* form, const ax_form_constraint* constraint, ax_error* error);
+
 // Deep copies of what a part or a constraint points to, and their release.
 ax_rim_part ax_rim_part_copy(const ax_rim_part* part);
 void ax_rim_part_release(ax_rim_part* part);

@@ -1,10 +1,11 @@
 // A form as bytes: a magic number, a version, every field in order, and a checksum. Little-endian, as the document's arrays are.
 #include "form/state.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-static const char magic[8] = "axform02";
+static const char magic[8] = "axform03";
 enum { MOST = 100000000 }; // entries of any one array
 
 typedef struct stream {
@@ -61,6 +62,40 @@ static void counted(stream* s, int* count, int least)
         s->bad = true, *count = 0;
 }
 
+// Bytes of bools and enumerators that are none may come from outside; padding of structs must not get in.
+static void flag(stream* s, bool* value)
+{
+    unsigned char byte = *value;
+    raw(s, &byte, 1);
+    s->bad = s->bad || byte > 1;
+    *value = byte == 1;
+}
+
+static int choice(stream* s, int value, int last)
+{
+    raw(s, &value, sizeof value);
+    s->bad = s->bad || value < 0 || value > last;
+    return s->bad ? 0 : value;
+}
+
+#define CHOICE(s, value, last) ((value) = choice(s, (int)(value), last))
+
+// Numbers that solvers can bear.
+static void reals(stream* s, const double* values, size_t count)
+{
+    for (size_t k = 0; k < count && s->reading && !s->bad; ++k)
+        s->bad = !(fabs(values[k]) <= 1e15);
+}
+
+#define REAL(s, value)                                                                                                 \
+    (raw(s, &(value), sizeof(value)), reals(s, (const double*)&(value), sizeof(value) / sizeof(double)))
+
+static void indices(stream* s, const int* list, int count, int limit)
+{
+    for (int k = 0; k < count && !s->bad; ++k)
+        s->bad = list[k] < 0 || list[k] >= limit;
+}
+
 static void text(stream* s, const char** value)
 {
     int length = s->reading ? 0 : (int)strlen(*value);
@@ -72,10 +107,11 @@ static void text(stream* s, const char** value)
 
 static void shape(stream* s, ax_curve_shape* curve)
 {
-    FIELD(s, curve->kind);
-    FIELD(s, curve->closed);
+    CHOICE(s, curve->kind, AX_CURVE_SPLINE);
+    flag(s, &curve->closed);
     counted(s, &curve->count, 0);
     ARRAY(s, curve->points, curve->count);
+    reals(s, *curve->points, s->bad ? 0 : 3 * (size_t)curve->count);
 }
 
 static void mesh(stream* s, ax_mesh* m)
@@ -83,7 +119,17 @@ static void mesh(stream* s, ax_mesh* m)
     counted(s, &m->vertex_count, 0);
     counted(s, &m->face_count, 0);
     ARRAY(s, m->positions, m->vertex_count);
+    reals(s, *m->positions, s->bad ? 0 : 3 * (size_t)m->vertex_count);
     ARRAY(s, m->faces, m->face_count);
+    if (!s->bad)
+        indices(s, &m->faces[0][0], 3 * m->face_count, m->vertex_count);
+}
+
+static void rising(stream* s, const int* start, int count)
+{
+    s->bad = s->bad || start[0] != 0;
+    for (int k = 0; k < count && !s->bad; ++k)
+        s->bad = start[k] > start[k + 1];
 }
 
 static void linkage(stream* s, ax_linkage* l)
@@ -96,18 +142,26 @@ static void linkage(stream* s, ax_linkage* l)
     ARRAY(s, l->panels, l->triangle_count);
     ARRAY(s, l->hole_start, l->hole_count + 1);
     ARRAY(s, l->opening_start, l->opening_count + 1);
+    rising(s, l->hole_start, l->hole_count);
+    rising(s, l->opening_start, l->opening_count);
+    if (s->bad)
+        return;
     ARRAY(s, l->hole_hinges, l->hole_start[l->hole_count]);
     ARRAY(s, l->opening_hinges, l->opening_start[l->opening_count]);
     ARRAY(s, l->on_rim, l->hinge_count);
+    for (int h = 0; h < l->hinge_count && !s->bad; ++h)
+        s->bad = l->on_rim[h] > 1;
 }
 
 static void rim_part(stream* s, ax_rim_part* part)
 {
-    FIELD(s, part->kind);
+    CHOICE(s, part->kind, AX_RIM_SLIDE);
     counted(s, &part->count, 0);
     ARRAY(s, part->hinges, part->count);
-    if (part->kind == AX_RIM_FIXED)
+    if (part->kind == AX_RIM_FIXED) {
         ARRAY(s, part->places, part->count);
+        reals(s, *part->places, s->bad ? 0 : 3 * (size_t)part->count);
+    }
     if (part->kind == AX_RIM_SLIDE)
         shape(s, &part->curve);
 }
@@ -115,16 +169,18 @@ static void rim_part(stream* s, ax_rim_part* part)
 static void constraint(stream* s, ax_form_constraint* c)
 {
     text(s, &c->name);
-    FIELD(s, c->kind);
+    CHOICE(s, c->kind, AX_HELD_FAIR);
     counted(s, &c->count, 0);
     ARRAY(s, c->hinges, c->count);
-    FIELD(s, c->weight);
-    FIELD(s, c->point);
-    FIELD(s, c->direction);
+    REAL(s, c->weight);
+    REAL(s, c->point);
+    REAL(s, c->direction);
     FIELD(s, c->order);
-    FIELD(s, c->support);
-    if (c->kind == AX_HELD_FIXED)
+    flag(s, &c->support);
+    if (c->kind == AX_HELD_FIXED) {
         ARRAY(s, c->places, c->count);
+        reals(s, *c->places, s->bad ? 0 : 3 * (size_t)c->count);
+    }
     if (c->kind == AX_HELD_CURVE)
         shape(s, &c->curve);
     if (c->kind == AX_HELD_SURFACE) {
@@ -138,31 +194,46 @@ static void lattice(stream* s, ax_lattice* l)
 {
     linkage(s, &l->linkage);
     ARRAY(s, l->hinges, l->linkage.hinge_count);
-    FIELD(s, l->spacing);
-    FIELD(s, l->angle);
-    FIELD(s, l->offset);
+    reals(s, *l->hinges, s->bad ? 0 : 2 * (size_t)l->linkage.hinge_count);
+    REAL(s, l->spacing);
+    s->bad = s->bad || (s->reading && !(l->spacing > 1e-12));
+    REAL(s, l->angle);
+    REAL(s, l->offset);
 }
 
 // Copies an array of the form when reading, so that those made with the form stay in place.
 static void state(stream* s, void* data, size_t bytes)
 {
     raw(s, data, bytes);
+    reals(s, data, s->bad ? 0 : bytes / sizeof(double));
+}
+
+static void dynamics(stream* s, ax_form_dynamics* d)
+{
+    CHOICE(s, d->kind, AX_DYNAMICS_INFLATION);
+    CHOICE(s, d->load.kind, AX_LOAD_INFLATION);
+    REAL(s, d->load.direction);
+    REAL(s, d->load.pressure);
+    REAL(s, d->load.density);
+    flag(s, &d->adapt);
+    REAL(s, d->give);
+    flag(s, &d->collisions);
 }
 
 static void body(stream* s, ax_form* f)
 {
     size_t n = (size_t)f->lattice.linkage.hinge_count, t = (size_t)f->lattice.linkage.triangle_count;
     state(s, f->prescribed, t * sizeof *f->prescribed);
-    FIELD(s, f->mouth_min);
-    FIELD(s, f->released);
-    FIELD(s, f->dynamics);
+    REAL(s, f->mouth_min);
+    flag(s, &f->released);
+    dynamics(s, &f->dynamics);
     state(s, f->flat, n * sizeof *f->flat);
     state(s, f->deployed, n * sizeof *f->deployed);
     state(s, f->simulated, n * sizeof *f->simulated);
     state(s, f->side, t * sizeof *f->side);
-    FIELD(s, f->growth);
-    FIELD(s, f->exact);
-    FIELD(s, f->settled);
+    REAL(s, f->growth);
+    flag(s, &f->exact);
+    flag(s, &f->settled);
     FIELD(s, f->revision);
     FIELD(s, f->iterations);
 
@@ -183,6 +254,7 @@ static void body(stream* s, ax_form* f)
         text(s, (const char**)&f->sets[k].name);
         counted(s, &f->sets[k].count, 0);
         ARRAY(s, f->sets[k].hinges, f->sets[k].count);
+        indices(s, f->sets[k].hinges, s->bad ? 0 : f->sets[k].count, f->lattice.linkage.hinge_count);
     }
     counted(s, &f->underlay_count, 0);
     if (s->reading) {
@@ -194,6 +266,7 @@ static void body(stream* s, ax_form* f)
         mesh(s, f->underlays + k);
     }
     ARRAY(s, f->clearances, f->underlay_count);
+    reals(s, f->clearances, s->bad ? 0 : (size_t)f->underlay_count);
 }
 
 static uint64_t checksum(const unsigned char* bytes, size_t size)
@@ -209,7 +282,7 @@ void* ax_form_save(const ax_form* form, size_t* size)
     stream s = {0};
     ax_form* f = (ax_form*)form; // writing changes nothing
     raw(&s, (void*)magic, sizeof magic);
-    FIELD(&s, f->unit);
+    CHOICE(&s, f->unit, AX_METRE);
     lattice(&s, &f->lattice);
     body(&s, f);
     size_t count;
@@ -239,9 +312,9 @@ ax_status ax_form_load(const void* bytes, size_t size, ax_form** out, ax_error* 
     if (sum != checksum(bytes, size - sizeof sum))
         return damaged(error);
     stream s = {.bytes = (unsigned char*)bytes, .size = size - sizeof sum, .at = sizeof magic, .reading = true};
-    ax_unit unit;
+    ax_unit unit = AX_METRE;
     ax_lattice sheet = {0};
-    FIELD(&s, unit);
+    CHOICE(&s, unit, AX_METRE);
     lattice(&s, &sheet);
     if (s.bad || ax_linkage_check(&sheet.linkage, NULL) != AX_OK) {
         ax_lattice_free(&sheet);
@@ -253,7 +326,11 @@ ax_status ax_form_load(const void* bytes, size_t size, ax_form** out, ax_error* 
     FIELD(&s, length);
     f->pending = array(&s, NULL, length, sizeof *f->pending);
     f->pending_count = length;
-    if (s.bad || s.at != s.size) {
+    reals(&s, f->pending, s.bad ? 0 : length);
+    s.bad = s.bad || s.at != s.size || ax_form_check_rim(f, f->rim_count, f->rim, NULL) != AX_OK;
+    for (int k = 0; k < f->held_count && !s.bad; ++k)
+        s.bad = ax_form_check_constraint(f, f->held + k, NULL) != AX_OK;
+    if (s.bad) {
         ax_form_free(f);
         return damaged(error);
     }
