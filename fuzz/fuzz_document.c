@@ -106,7 +106,7 @@ static void use(const ax_design* design)
     int count;
     const ax_export_type* const* types = ax_export_types(&count);
     for (int k = 0; k < count; ++k)
-        if (strcmp(types[k]->ending, ".png") != 0) // slow, and of another module
+        if (types[k]->write && strcmp(types[k]->ending, ".png") != 0) // slow, and of another module
             types[k]->write(design, types[k]->default_state, &(ax_export_options){0}, "/dev/null", NULL);
     promise(ax_document_save(path, design, NULL) == AX_OK);
     ax_design again;
