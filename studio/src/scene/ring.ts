@@ -31,7 +31,7 @@ export function drawRing(context: CanvasRenderingContext2D, stage: Stage, view: 
     const place = new THREE.Vector3();
     const normal = new THREE.Vector3();
     const eye = view.orbit.camera.position;
-    const carried = lowPass(ring.at.map((p) => skin.carry(p, new THREE.Vector3())));
+    const carried = lowPass(ring.at.map((p) => skin.carry(p, new THREE.Vector3())), view.state === "flat" ? 1 : 3);
     const projected = ring.at.map((p, k) => {
         const s = stage.project(view, carried[k]);
         const away = view.state === "space" && skin.normal(p.face, normal).dot(eye.clone().sub(carried[k])) < 0;
@@ -96,11 +96,12 @@ export function drawRing(context: CanvasRenderingContext2D, stage: Stage, view: 
     context.restore();
 }
 
-/** Panels turn against each other, which carries a circle over in steps as long as a panel: only its slow waves are kept. */
-function lowPass(loop: THREE.Vector3[]): THREE.Vector3[] {
+/** Panels turn against each other, which carries a circle over in steps as long as a panel: only its slow waves are kept,
+ *  in the plane those of an ellipse. */
+function lowPass(loop: THREE.Vector3[], waves: number): THREE.Vector3[] {
     const n = loop.length;
     const out = loop.map(() => new THREE.Vector3());
-    for (let wave = 0; wave <= 4; wave++) {
+    for (let wave = 0; wave <= waves; wave++) {
         const cosine = new THREE.Vector3();
         const sine = new THREE.Vector3();
         loop.forEach((p, k) => {

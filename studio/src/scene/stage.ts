@@ -275,24 +275,30 @@ export class Stage {
         }, 80);
     }
 
-    /** A picture of the views as they are, on their ground. */
-    async picture(): Promise<Blob> {
+    /** The views as they are, on their ground. */
+    paintOn(context: CanvasRenderingContext2D, ground = true): void {
         this.draw(performance.now());
+        const ratio = this.canvas.width / this.width;
+        context.clearRect(0, 0, this.canvas.width, this.canvas.height);
+        if (ground)
+            for (const id of this.shown) {
+                const { x, y, width, height } = this.views[id].rect;
+                const [cx, cy] = [(x + width / 2) * ratio, (y + 0.38 * height) * ratio];
+                const gradient = context.createRadialGradient(cx, cy, 0, cx, cy, Math.max(width, height) * 0.75 * ratio);
+                gradient.addColorStop(0, this.look.backdrop[0]);
+                gradient.addColorStop(1, this.look.backdrop[1]);
+                context.fillStyle = gradient;
+                context.fillRect(x * ratio, y * ratio, width * ratio, height * ratio);
+            }
+        context.drawImage(this.canvas, 0, 0);
+    }
+
+    async picture(ground = true): Promise<Blob> {
         const out = document.createElement("canvas");
         out.width = this.canvas.width;
         out.height = this.canvas.height;
-        const context = out.getContext("2d")!;
-        const ratio = out.width / this.width;
-        for (const id of this.shown) {
-            const { x, y, width, height } = this.views[id].rect;
-            const gradient = context.createRadialGradient((x + width / 2) * ratio, (y + 0.38 * height) * ratio, 0, (x + width / 2) * ratio, (y + 0.38 * height) * ratio, Math.max(width, height) * 0.75 * ratio);
-            gradient.addColorStop(0, this.look.backdrop[0]);
-            gradient.addColorStop(1, this.look.backdrop[1]);
-            context.fillStyle = gradient;
-            context.fillRect(x * ratio, y * ratio, width * ratio, height * ratio);
-        }
-        context.drawImage(this.canvas, 0, 0);
-        return new Promise((resolve, reject) => out.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The picture could not be made."))), "image/png"));
+        this.paintOn(out.getContext("2d")!, ground);
+        return new Promise((resolve, reject) => out.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The picture could not be made."))), ground ? "image/png" : "image/webp", 0.9));
     }
 
     dispose(): void {

@@ -38,7 +38,8 @@ onShell((shell, { linkage }) => {
     if (linkage || (motion.value.frames.length > 0 && shell.revision !== ofRevision && !motion.value.computing)) motion.value = none;
 });
 
-async function compute(): Promise<boolean> {
+/** Asks the solver for the way, unless it is known; false if there is none. */
+export async function computeMotion(): Promise<boolean> {
     const shell = currentShell();
     if (!shell) return false;
     if (motion.value.frames.length && ofRevision === shell.revision) return true;
@@ -66,7 +67,7 @@ export async function playMotion(): Promise<void> {
     change({ playing: true });
     // what is computed now is shown as it comes; what is known already is shown at 30 frames a second
     const known = motion.value.frames.length > 0 && ofRevision === currentShell()?.revision;
-    if (!(await compute()) || !motion.value.playing) return;
+    if (!(await computeMotion()) || !motion.value.playing) return;
     if (!known || reducedMotion.value) {
         change({ playing: false, shown: null });
         return;
@@ -95,13 +96,18 @@ export async function scrub(share: number): Promise<void> {
         return;
     }
     change({ playing: false });
-    if (!motion.value.frames.length && !motion.value.computing && !(await compute())) return;
+    if (!motion.value.frames.length && !motion.value.computing && !(await computeMotion())) return;
     const { shares } = motion.value;
     let best = 0;
     shares.forEach((s, k) => {
         if (Math.abs(s - share) < Math.abs(shares[best] - share)) best = k;
     });
     change({ shown: best });
+}
+
+/** One state of the way; null: the document's own. */
+export function showFrame(shown: number | null): void {
+    change({ shown, playing: false });
 }
 
 export function stepMotion(by: number): void {

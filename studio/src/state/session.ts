@@ -6,6 +6,7 @@ import type {
     Check, DocumentEvent, Hello, LinkageEvent, OperatorCall, OperatorSchema, Problem, ProgressEvent, ReportEvent, ServerEvent,
     StatusEvent, VariantsEvent,
 } from "../protocol/types";
+import { medianEdge } from "../panels/linkage";
 import { Shell } from "../panels/shell";
 
 export type Connection = "connecting" | "open" | "lost";
@@ -28,6 +29,9 @@ export const topology = signal(0);
 /** Rises with every frame, at most once per animation frame. */
 export const revision = signal(0);
 export const currentShell = () => shell;
+
+/** The panel edge L, for figures that are given over it. */
+export const panelEdge = () => (shell ? medianEdge(shell.linkage, shell.flat) : 1);
 
 export type ShellListener = (shell: Shell, change: { linkage: boolean; frame: Frame }) => void;
 const shellListeners = new Set<ShellListener>();

@@ -2,6 +2,7 @@ import { useSignal } from "@preact/signals";
 import { commandNamed, finish } from "../state/commands";
 import { connection, documentState, progress, readOnly, reconnect, report, status } from "../state/session";
 import { darkTheme, theme } from "../state/settings";
+import { recording } from "../state/video";
 import { type Mode, dialog, drawerOpen, mode, page } from "../state/view";
 import { Button, Segments, Tool } from "./controls";
 import { number, time } from "./format";
@@ -24,6 +25,7 @@ export function SolverChip() {
                 <Button small onClick={commandNamed("cancel").run}>Cancel</Button>
             </span>
         );
+    if (recording.value) return <span class="chip plain" role="status"><i class="ring" /><span>Recording</span></span>;
     if (!s) return null;
     if (s.solver !== "idle") return <span class="chip plain" role="status"><i class="ring" /><span>{s.words}</span></span>;
     const failures = report.value?.checks.filter((c) => c.severity === "failure") ?? [];
@@ -41,7 +43,7 @@ export function SolverChip() {
 function Saved() {
     const d = documentState.value;
     if (!d) return null;
-    const text = readOnly.value ? `Read-only: ${readOnly.value}` : d.path ? "Saved" : d.autosaved ? `Kept, ${time(d.autosaved).replace("Today, ", "")}` : "";
+    const text = readOnly.value ? `Read-only: ${readOnly.value}` : d.path ? "Saved" : d.autosaved ? `Draft, kept ${time(d.autosaved).replace("Today, ", "")}` : "Draft";
     return <span class="saved" title={d.path ?? "Not saved under a name yet"}>{text}</span>;
 }
 

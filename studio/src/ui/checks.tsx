@@ -1,6 +1,6 @@
 // "Can it deploy?", always in sight: a verdict and what it hangs on. A check leads to its place.
 import { show } from "../state/selection";
-import { documentState, report, status } from "../state/session";
+import { documentState, panelEdge, report, status } from "../state/session";
 import { mode } from "../state/view";
 import type { Check } from "../protocol/types";
 import { severityClass, severityIcon } from "./controls";
@@ -37,7 +37,7 @@ export function Checks() {
                 <span class="l">{words}</span>
             </div>
             {shownChecks(r.checks).map((c) => {
-                const w = checkWords(c, (documentState.value?.unit ?? "m") as LengthUnit);
+                const w = checkWords(c, (documentState.value?.unit ?? "m") as LengthUnit, panelEdge());
                 return (
                     <button key={c.key} type="button" title={`${c.title}: ${c.answer}. ${c.limit}`} onClick={() => show(c.triangle, c.hinge)}>
                         <span class="q">{w.question}</span>

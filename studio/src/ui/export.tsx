@@ -5,6 +5,7 @@ import type { ExportedFile, Exporter, StateName } from "../protocol/types";
 import { CommandError } from "../protocol/link";
 import { ask, currentShell, documentState, hello, report, revision, status } from "../state/session";
 import { download, savePicture } from "../state/commands";
+import { record } from "../state/video";
 import { dialog } from "../state/view";
 import { Button, Choice, Dialog, NumberRow, Row, Section } from "./controls";
 import { bytes, count, plural } from "./format";
@@ -17,13 +18,22 @@ const groups: { title: string; endings: RegExp }[] = [
     { title: "Picture", endings: /\.png$/ },
 ];
 const dotted = (e: Exporter) => (e.ending.startsWith(".") ? e.ending : `.${e.ending}`);
+/** What the page makes itself. */
+const ownFormats = [
+    { id: "picture", title: "PNG of the view", side: "screen", doc: "The views as they are now, as one PNG.", run: savePicture },
+    { id: "turntable", title: "Turntable", side: "video", doc: "The deployed shell turned once round, twelve seconds, as WebM.", run: () => record("turntable") },
+    { id: "deployment", title: "Deployment", side: "video", doc: "The states that the solver goes through from flat to deployed, as WebM.", run: () => record("deployment") },
+];
 const isCut = (ending: string) => groups[0].endings.test(ending);
+/** What is asked for most stands first. */
+const order = [".svg", ".dxf", ".pdf", ".glb", ".obj", ".stl", ".json", ".csv"];
+const rank = (e: Exporter) => (order.indexOf(dotted(e)) + 100) % 100;
 /** Options that cut formats take. */
 const cutDefaults = { sheet: "", kerf: 0 };
 
 export function ExportDialog() {
     revision.value;
-    const exporters = hello.value?.exporters ?? [];
+    const exporters = (hello.value?.exporters ?? []).slice().sort((a, b) => rank(a) - rank(b));
     const ending = useSignal(exporters.some((e) => dotted(e) === ".svg") ? ".svg" : exporters[0] ? dotted(exporters[0]) : "picture");
     const state = useSignal<StateName | "">("");
     const options = useSignal<{ sheet: string; kerf: number }>(cutDefaults);
@@ -64,8 +74,8 @@ export function ExportDialog() {
                 const sheets = list.length > 1 ? list.filter((f) => /-\d+\.\w+$/.test(f.name)) : list;
                 const urls: string[] = [];
                 for (const f of sheets.slice(0, 12)) {
-                    const blob = await (await fetch(f.url)).blob();
-                    urls.push(URL.createObjectURL(blob));
+                    const data = await (await fetch(f.url)).arrayBuffer();
+                    urls.push(URL.createObjectURL(new Blob([data], { type: f.name.endsWith(".svg") ? "image/svg+xml" : "image/png" })));
                 }
                 made.push(...urls);
                 if (current) looked.value = { urls, names: sheets.map((f) => f.name), at: 0 };
@@ -77,9 +87,10 @@ export function ExportDialog() {
     }, [ending.value, state.value, options.value]);
 
     const exportNow = async () => {
-        if (ending.value === "picture") {
-            await savePicture();
+        const own = ownFormats.find((o) => o.id === ending.value);
+        if (own) {
             dialog.value = null;
+            await own.run();
             return;
         }
         const list = await run();
@@ -94,7 +105,7 @@ export function ExportDialog() {
             <>
                 <span class="grow ellipsis small" role="status">{files.value ? `${files.value.map((f) => f.name).slice(0, 3).join(", ")}${files.value.length > 3 ? ` and ${files.value.length - 3} more` : ""}, ${bytes(files.value.reduce((s, f) => s + f.bytes, 0))}` : exporter?.doc}</span>
                 <Button onClick={() => (dialog.value = null)}>Cancel</Button>
-                <Button primary disabled={busy.value || (!exporter && ending.value !== "picture")} onClick={() => void exportNow()}>{busy.value ? "Working" : files.value && files.value.length > 1 ? `Export ${plural(files.value.length, "file")}` : "Export"}</Button>
+                <Button primary disabled={busy.value || (!exporter && !ownFormats.some((o) => o.id === ending.value))} onClick={() => void exportNow()}>{busy.value ? "Working" : files.value && files.value.length > 1 ? `Export ${plural(files.value.length, "file")}` : "Export"}</Button>
             </>
         }>
             <div class="export">
@@ -107,10 +118,10 @@ export function ExportDialog() {
                                 <h3>{g.title}</h3>
                                 {all.map((e) => (
                                     <button key={e.ending} type="button" role="radio" aria-checked={ending.value === dotted(e)} onClick={() => ((ending.value = dotted(e)), (state.value = ""))}>
-                                        {e.name}<span>{dotted(e)}</span>
+                                        {e.name.charAt(0).toUpperCase() + e.name.slice(1)}<span>{dotted(e)}</span>
                                     </button>
                                 ))}
-                                {g.title === "Picture" && <button type="button" role="radio" aria-checked={ending.value === "picture"} onClick={() => (ending.value = "picture")}>PNG of the view<span>screen</span></button>}
+                                {g.title === "Picture" && ownFormats.map((o) => <button key={o.id} type="button" role="radio" aria-checked={ending.value === o.id} onClick={() => (ending.value = o.id)}>{o.title}<span>{o.side}</span></button>)}
                             </div>
                         );
                     })}
@@ -131,7 +142,7 @@ export function ExportDialog() {
                             )}
                         </>
                     ) : (
-                        <div class="empty"><span>{busy.value ? "Making it." : ending.value === "picture" ? "The views as they are now, as one PNG." : (exporter?.doc ?? "")}</span></div>
+                        <div class="empty"><span>{busy.value ? "Making it." : ownFormats.find((o) => o.id === ending.value)?.doc ?? exporter?.doc ?? ""}</span></div>
                     )}
                 </div>
                 <div class="settings">

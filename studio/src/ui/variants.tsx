@@ -1,12 +1,18 @@
 // Variants: copies of the recipe under a name, small in the inspector, side by side in their own mode.
 import { useSignal } from "@preact/signals";
-import { command, documentState, variants } from "../state/session";
+import { medianEdge } from "../panels/linkage";
+import { command, documentState, panelEdge, variants } from "../state/session";
 import { looks } from "../state/variants";
 import { mode } from "../state/view";
 import { Button, Section, severityClass, severityIcon } from "./controls";
 import { checkWords } from "./checkwords";
 import { type LengthUnit, count } from "./format";
 import { Icon } from "./icons";
+
+const edgeOf = (name: string) => {
+    const shell = looks.value[name]?.shell;
+    return shell ? medianEdge(shell.linkage, shell.flat) : panelEdge();
+};
 
 function nextName(): string {
     const taken = new Set(variants.value.map((v) => v.name));
@@ -55,7 +61,7 @@ export function VariantsPage() {
                         <table class="figures" style={{ margin: "8px 0" }}>
                             <tbody>
                                 {v.checks.map((c) => (
-                                    <tr key={c.key}><th scope="row">{checkWords(c, unit).question}</th><td><span class="row" style={{ justifyContent: "flex-end" }}><Icon name={severityIcon[c.severity]} size={16} class={`icon ${severityClass[c.severity]}`} />{checkWords(c, unit).answer}</span></td></tr>
+                                    <tr key={c.key}><th scope="row">{checkWords(c, unit, edgeOf(v.name)).question}</th><td><span class="row" style={{ justifyContent: "flex-end" }}><Icon name={severityIcon[c.severity]} size={16} class={`icon ${severityClass[c.severity]}`} />{checkWords(c, unit, edgeOf(v.name)).answer}</span></td></tr>
                                 ))}
                             </tbody>
                         </table>
