@@ -2,7 +2,7 @@
 # take the compiler longer than everything else.
 set(types
   html "text/html; charset=utf-8" js "text/javascript; charset=utf-8" css "text/css; charset=utf-8" json "application/json"
-  svg "image/svg+xml" png "image/png" woff2 "font/woff2" wasm "application/wasm" txt "text/plain; charset=utf-8")
+  svg "image/svg+xml" png "image/png" webp "image/webp" woff2 "font/woff2" wasm "application/wasm" txt "text/plain; charset=utf-8")
 if(NOT EXISTS ${PAGE}/index.html)
   file(WRITE ${PAGE}/index.html "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Auxshell</title>
 <h1>The studio's page is not part of this build</h1>

@@ -110,6 +110,16 @@ export class Hand {
             return [...s.flat, ...s.deployed, ...(s.simulated ?? [])];
         });
     }
+    /** The other tab comes to show the same: frames reach every client, though not at one moment. */
+    async sameAs(other) {
+        const end = Date.now() + 30000;
+        let [mine, theirs] = [await this.places(), await other.places()];
+        while (JSON.stringify(mine) !== JSON.stringify(theirs)) {
+            if (Date.now() > end) throw new Error("two tabs show different places");
+            await this.page.waitForTimeout(100);
+            [mine, theirs] = [await this.places(), await other.places()];
+        }
+    }
     figures() {
         return this.page.evaluate(() => {
             const s = auxshell.shell();
