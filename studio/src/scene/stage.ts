@@ -64,6 +64,8 @@ export class Stage {
     // without a graphics card both kinds of shadow wait until the shell rests
     private dirtyShadows = false;
     private dirtyGround = false;
+    /** Places came in less than a moment ago. */
+    private moving = false;
     private width = 0;
     private height = 0;
 
@@ -145,6 +147,7 @@ export class Stage {
         this.scenes.space.setPlaces(space ?? this.shell.simulated ?? this.shell.deployed);
         this.skins?.flat.touch();
         this.skins?.space.touch();
+        this.moving = true;
         this.dirtyShadows = this.dirtyGround = true;
         this.invalidate();
     }
@@ -247,7 +250,8 @@ export class Stage {
                 moving = view.orbit.update(now, radiusOf(scene.bounds)) || moving;
                 const pixels = view.orbit.pixels(scene.panels.edge, rect.height);
                 view.detail = detailFor(pixels, view.detail);
-                scene.panels.setDetail(view.detail, pixels);
+                // drawn in software, a moving shell goes without bevels and joints
+                scene.panels.setDetail(this.frugal && this.moving && view.detail === "full" ? "prism" : view.detail, pixels);
                 renderer.setViewport(rect.x, this.height - rect.y - rect.height, rect.width, rect.height);
                 renderer.setScissor(rect.x, this.height - rect.y - rect.height, rect.width, rect.height);
                 renderer.render(scene.scene, view.orbit.camera);
@@ -268,6 +272,7 @@ export class Stage {
         clearTimeout(this.restTimer);
         this.dirtyGround = false;
         this.restTimer = setTimeout(() => {
+            this.moving = false;
             if (!this.scenes) return;
             for (const scene of Object.values(this.scenes)) scene.drawGround(this.renderer);
             this.dirtyShadows ||= this.frugal;

@@ -1,6 +1,8 @@
 // Calls of operators with what the user last set: fields of their schemas, kept while the page is open.
 import { signal } from "@preact/signals";
 import type { FieldSchema, OperatorCall, OperatorSchema } from "../protocol/types";
+import { boundsOf } from "../panels/linkage";
+import type { Shell } from "../panels/shell";
 import { currentShell, operatorNamed } from "../state/session";
 
 const kept = signal<Record<string, Record<string, unknown>>>({});
@@ -55,11 +57,10 @@ export function missing(schema: OperatorSchema, call: OperatorCall): FieldSchema
 export function sheetRadius(): number {
     const shell = currentShell();
     if (!shell) return 1;
-    let lo = [Infinity, Infinity];
-    let hi = [-Infinity, -Infinity];
-    for (let i = 0; i < shell.sheet.length; i += 3) {
-        lo = [Math.min(lo[0], shell.sheet[i]), Math.min(lo[1], shell.sheet[i + 1])];
-        hi = [Math.max(hi[0], shell.sheet[i]), Math.max(hi[1], shell.sheet[i + 1])];
+    if (known.shell !== shell) {
+        const { min, max } = boundsOf(shell.sheet);
+        known = { shell, radius: Math.max(max[0] - min[0], max[1] - min[1]) / 2 || 1 };
     }
-    return Math.max(hi[0] - lo[0], hi[1] - lo[1]) / 2 || 1;
+    return known.radius;
 }
+let known: { shell: Shell | null; radius: number } = { shell: null, radius: 1 };
