@@ -22,10 +22,10 @@ try {
             const stage = auxshell.stage.value;
             const whole = await createImageBitmap(await stage.picture(false));
             const out = document.createElement("canvas");
-            [out.width, out.height] = [684, 416];
-            const scale = Math.max(684 / whole.width, 416 / whole.height);
-            out.getContext("2d").drawImage(whole, (684 - whole.width * scale) / 2, (416 - whole.height * scale) / 2, whole.width * scale, whole.height * scale);
-            const blob = await new Promise((resolve) => out.toBlob(resolve, "image/webp", 0.85));
+            [out.width, out.height] = [480, 292];
+            const scale = Math.max(480 / whole.width, 292 / whole.height);
+            out.getContext("2d").drawImage(whole, (480 - whole.width * scale) / 2, (292 - whole.height * scale) / 2, whole.width * scale, whole.height * scale);
+            const blob = await new Promise((resolve) => out.toBlob(resolve, "image/webp", 0.8));
             return [...new Uint8Array(await blob.arrayBuffer())];
         });
         writeFileSync(join(gallery, `${name}.webp`), Buffer.from(bytes));
@@ -58,6 +58,7 @@ try {
         await hand.key("Escape");
         await hand.key("Control+Alt+n");
         await shot("start");
+        await hand.page.context().close();
     }
 } finally {
     await browser.close();

@@ -249,12 +249,14 @@ export const scenarios = {
             assert.deepEqual(await hand.places(), before, "the last state stays on screen");
             await hand.page.getByRole("button", { name: "Reconnect" }).waitFor();
             await studio.start(".");
-            const again = await Hand.open(browser, studio.address);
-            await again.key("Control+Alt+n");
-            await again.page.getByRole("button", { name: /Recovered/ }).first().click();
+            // the new address with the old document's name, as a user has it who copies what the terminal says
+            const again = await Hand.open(browser, studio.address + new URL(hand.page.url()).hash);
             await again.atIs(steps.length + 1);
             assert.deepEqual(await again.steps(), [...steps, "paint"]);
-            assert.deepEqual(await again.places(), before);
+            // the origin that places are sent against is another; a millionth of the sheet is single precision
+            const after = await again.places();
+            assert.equal(after.length, before.length);
+            assert.ok(Math.max(...after.map((v, k) => Math.abs(v - before[k]))) < 5e-6, "every place is where it was");
             assert.deepEqual([...hand.errors, ...again.errors], []);
         } finally {
             await studio.remove();

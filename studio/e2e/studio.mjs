@@ -103,11 +103,12 @@ export class Hand {
         await this.rest();
     }
 
-    /** All places as numbers: flat, then the state in space. */
+    /** All places in the document's frame: flat, deployed, simulated. */
     places() {
         return this.page.evaluate(() => {
             const s = auxshell.shell();
-            return [...s.flat, ...s.deployed, ...(s.simulated ?? [])];
+            const moved = (places, origin) => [...(places ?? [])].map((v, k) => v + origin[k % 3]);
+            return [...moved(s.flat, [...s.flatOrigin, 0]), ...moved(s.deployed, s.origin), ...moved(s.simulated, s.origin)];
         });
     }
     /** The other tab comes to show the same: frames reach every client, though not at one moment. */

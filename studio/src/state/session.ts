@@ -83,13 +83,9 @@ async function join(event: Hello): Promise<void> {
         await link!.ask("join", known ? { document: known } : {});
     } catch (error) {
         if (!known) throw error;
-        // the server was started anew and no longer knows the id
-        await link!.ask("join", {});
-        if (event.recovered.length)
-            problem.value = {
-                about: "recovered",
-                error: { status: 1, word: "failed", message: "This document belongs to an earlier run. Open it again under Recovered on the start page." },
-            };
+        // the server was started anew; what was no file then is among the recovered
+        if (event.recovered.some((r) => r.name === known)) await link!.ask("open", { recovered: known });
+        else await link!.ask("join", {});
     }
     connection.value = "open";
 }

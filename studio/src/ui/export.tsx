@@ -25,6 +25,12 @@ const ownFormats = [
     { id: "deployment", title: "Deployment", side: "video", doc: "The states that the solver goes through from flat to deployed, as WebM.", run: () => record("deployment") },
 ];
 const isCut = (ending: string) => groups[0].endings.test(ending);
+/** A cut file as it is looked at: lines of a tenth of a millimetre on metres of sheet would not be seen. */
+function seen(svg: string): string {
+    const width = Number(/viewBox="[-\d.]+ [-\d.]+ ([\d.]+)/.exec(svg)?.[1] ?? 0);
+    return width ? svg.replace(/stroke-width="[\d.]+"/g, `stroke-width="${(width / 1100).toPrecision(3)}"`) : svg;
+}
+
 /** What is asked for most stands first. */
 const order = [".svg", ".dxf", ".pdf", ".glb", ".obj", ".stl", ".json", ".csv"];
 const rank = (e: Exporter) => (order.indexOf(dotted(e)) + 100) % 100;
@@ -74,8 +80,9 @@ export function ExportDialog() {
                 const sheets = list.length > 1 ? list.filter((f) => /-\d+\.\w+$/.test(f.name)) : list;
                 const urls: string[] = [];
                 for (const f of sheets.slice(0, 12)) {
-                    const data = await (await fetch(f.url)).arrayBuffer();
-                    urls.push(URL.createObjectURL(new Blob([data], { type: f.name.endsWith(".svg") ? "image/svg+xml" : "image/png" })));
+                    const response = await fetch(f.url);
+                    urls.push(URL.createObjectURL(f.name.endsWith(".svg") ? new Blob([seen(await response.text())], { type: "image/svg+xml" })
+                        : new Blob([await response.arrayBuffer()], { type: "image/png" })));
                 }
                 made.push(...urls);
                 if (current) looked.value = { urls, names: sheets.map((f) => f.name), at: 0 };
@@ -118,7 +125,7 @@ export function ExportDialog() {
                                 <h3>{g.title}</h3>
                                 {all.map((e) => (
                                     <button key={e.ending} type="button" role="radio" aria-checked={ending.value === dotted(e)} onClick={() => ((ending.value = dotted(e)), (state.value = ""))}>
-                                        {e.name.charAt(0).toUpperCase() + e.name.slice(1)}<span>{dotted(e)}</span>
+                                        {/^[a-z]+ /.test(e.name) ? e.name.charAt(0).toUpperCase() + e.name.slice(1) : e.name}<span>{dotted(e)}</span>
                                     </button>
                                 ))}
                                 {g.title === "Picture" && ownFormats.map((o) => <button key={o.id} type="button" role="radio" aria-checked={ending.value === o.id} onClick={() => (ending.value = o.id)}>{o.title}<span>{o.side}</span></button>)}
