@@ -9,8 +9,8 @@ const gallery = join(root, "studio/public/examples");
 const pictures = join(root, "docs/pictures");
 mkdirSync(gallery, { recursive: true });
 
-const studio = await new Studio().start(".");
 const browser = await launch();
+let studio = await new Studio().start(".");
 try {
     const card = await Hand.open(browser, studio.address, { viewport: { width: 1100, height: 760 }, deviceScaleFactor: 1 });
     await card.key("2");
@@ -33,6 +33,8 @@ try {
     await card.page.context().close();
 
     for (const colorScheme of ["light", "dark"]) {
+        await studio.remove();
+        studio = await new Studio().start(".");
         const hand = await Hand.open(browser, studio.address, { colorScheme });
         const shot = async (name) => {
             await hand.page.waitForTimeout(2500);
@@ -45,7 +47,7 @@ try {
             continue;
         }
         await shot("design");
-        await hand.key("Control+Enter");
+        if ((await hand.page.evaluate(() => auxshell.session.status.value.state)) !== "exact") await hand.key("Control+Enter");
         await hand.page.waitForFunction(() => auxshell.session.status.value?.state === "exact", null, { timeout: 120000 });
         await hand.rest();
         await hand.key("v");
