@@ -365,11 +365,9 @@ export const scenarios = {
     },
 
     async "axe finds nothing serious, light and dark, and at 200 %"(browser) {
-        const studio = await studioOn(bowl);
-        try {
-            for (const options of [{ colorScheme: "light" }, { colorScheme: "dark" }, { viewport: { width: 800, height: 500 } }]) {
-                // without transitions: colours half way are no colours
-                const hand = await Hand.open(browser, studio.address, { ...options, reducedMotion: "reduce", bypassCSP: true });
+        for (const options of [{ colorScheme: "light" }, { colorScheme: "dark" }, { viewport: { width: 800, height: 500 } }])
+            // without transitions: colours half way are no colours
+            await withStudio(browser, bowl, async (hand) => {
                 await hand.page.evaluate(axe);
                 const check = async (where) => {
                     await hand.page.waitForTimeout(200);
@@ -393,11 +391,7 @@ export const scenarios = {
                 await check("variants");
                 await hand.key("Control+Alt+n");
                 await check("start");
-                await hand.page.context().close();
-            }
-        } finally {
-            await studio.remove();
-        }
+            }, { ...options, reducedMotion: "reduce", bypassCSP: true });
     },
 
     async "the tour has five steps, once"(browser) {
