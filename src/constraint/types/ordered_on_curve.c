@@ -65,12 +65,27 @@ static void project_lane(const ax_place* place, int n, int l, const ax_lane3* re
     }
 }
 
+// A rim is one constraint, and spare lanes repeat the last one: seven of eight lanes are then the same work.
+static bool repeats(int points, int l, const ax_lane3* y)
+{
+    for (int k = 0; k < points; ++k)
+        for (int c = 0; c < 3; ++c)
+            if (y[k][c][l] != y[k][c][l - 1])
+                return false;
+    return true;
+}
+
 static void project(const ax_lane* restrict block, const ax_place* place, int points, const ax_lane3* restrict y,
                     ax_lane3* restrict p)
 {
     (void)block;
     for (int l = 0; l < AX_W; ++l)
-        project_lane(place, points, l, y, p);
+        if (l == 0 || !repeats(points, l, y))
+            project_lane(place, points, l, y, p);
+        else
+            for (int k = 0; k < points; ++k)
+                for (int c = 0; c < 3; ++c)
+                    p[k][c][l] = p[k][c][l - 1];
 }
 
 const ax_constraint_type ax_constraint_ordered_on_curve = {
