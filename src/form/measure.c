@@ -157,9 +157,8 @@ ax_form_view ax_form_look(ax_form* f)
 // ---- what holds -----------------------------------------------------------------------------------------------------------------
 
 // Largest distance of hinges from the plane, line or circle that fits them best: the constraint's own projection.
-static double fit_distance(const ax_form* f, const char* name, int count, const int* hinges, const double (*x)[3])
+static double fit_distance(const char* name, int count, const int* hinges, const double (*x)[3])
 {
-    (void)f;
     const ax_constraint_type* type = ax_constraint_find(name);
     ax_lane3 *y = ax_alloc_aligned((size_t)count, sizeof *y), *p = ax_alloc_aligned((size_t)count, sizeof *p);
     double mean[3] = {0}, most = 0;
@@ -196,11 +195,11 @@ static double constraint_residual(const ax_form* f, int k, const double (*x)[3])
     double most = 0;
     switch (c->kind) {
     case AX_HELD_PLANE:
-        return fit_distance(f, "plane", c->count, c->hinges, x);
+        return fit_distance("plane", c->count, c->hinges, x);
     case AX_HELD_LINE:
-        return fit_distance(f, "line", c->count, c->hinges, x);
+        return fit_distance("line", c->count, c->hinges, x);
     case AX_HELD_CIRCLE:
-        return fit_distance(f, "circle", c->count, c->hinges, x);
+        return fit_distance("circle", c->count, c->hinges, x);
     case AX_HELD_PLANE_GIVEN:
         for (int i = 0; i < c->count; ++i)
             most = fmax(most, fabs(plane_distance(c, x[c->hinges[i]])));
@@ -374,7 +373,8 @@ static int by_severity(const void* a, const void* b)
 }
 
 // Normals that look down, and the curvature that the painted factors sum to. Curvature of the metric lambda^2: minus the Laplacian
-// of ln lambda, summed over the panels within a radius of each panel's place: a surface that carries more than 2 pi turns over.
+// of ln lambda, summed over discs of several sizes about places spread over the sheet: a surface that carries more than 2 pi turns
+// over.
 static void measure_overhang(const ax_form* f, ax_form_report* r)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
@@ -387,26 +387,29 @@ static void measure_overhang(const ax_form* f, ax_form_report* r)
     }
     r->overhang = down / (double)linkage->triangle_count;
 
-    // Gauss-Bonnet over discs about the sheet's middle: 2 pi (1 - mean of (1 + r d ln lambda / dr)); discs elsewhere by the same rule
-    // from the panels' neighbours. Panels exchange half the difference of ln lambda times sqrt 3 across each hinge.
+    // Curvature of a panel: the flow of ln lambda out of it, across each hinge sqrt 3 times the difference (the dual's weight). What lacks
+    // a neighbour is left out.
     double* curvature = AX_NEW0(double, linkage->triangle_count);
     for (int h = 0; h < linkage->hinge_count; ++h) {
         int a = f->holder[h][0], b = f->holder[h][1];
-        if (b < 0)
-            continue;
-        double flow = sqrt(3) * (log(f->prescribed[a]) - log(f->prescribed[b]));
-        curvature[a] += flow, curvature[b] -= flow;
+        double flow = b < 0 ? NAN : sqrt(3) * (log(f->prescribed[a]) - log(f->prescribed[b]));
+        curvature[a] += flow;
+        if (b >= 0)
+            curvature[b] -= flow;
     }
-    enum { RADII = 12 };
-    double ring[RADII] = {0};
-    for (int t = 0; t < linkage->triangle_count; ++t) {
-        int at = (int)(RADII * ax_distance2(f->centres[t], f->centre) / f->radius);
-        ring[at < RADII ? at : RADII - 1] += curvature[t];
-    }
-    r->curvature_max = 0;
-    for (int k = 0, last = RADII - 1; k < last; ++k) { // the border's panels lack neighbours
-        ring[k] += k ? ring[k - 1] : 0;
-        r->curvature_max = fmax(r->curvature_max, ring[k]);
+    enum { CENTRES = 64, RADII = 8 };
+    int stride = (linkage->triangle_count + CENTRES - 1) / CENTRES;
+    for (int c = 0; c < linkage->triangle_count; c += stride) {
+        double ring[RADII] = {0}, sum = 0;
+        for (int t = 0; t < linkage->triangle_count; ++t) {
+            int at = (int)(RADII * ax_distance2(f->centres[t], f->centres[c]) / f->radius);
+            if (at < RADII && !isnan(curvature[t]))
+                ring[at] += curvature[t];
+        }
+        for (int k = 0; k < RADII; ++k) {
+            sum += ring[k];
+            r->curvature_max = fmax(r->curvature_max, sum);
+        }
     }
     ax_free(curvature);
 }

@@ -4,6 +4,18 @@
 
 #include <stdio.h>
 
+const ax_field ax_hold_fields[AX_HOLD_FIELDS] = {
+    AX_HOLD_NAME(ax_hold_arguments),
+    AX_HOLD_HINGES(ax_hold_arguments, .required = true),
+    AX_HOLD_WEIGHT(ax_hold_arguments),
+    AX_HOLD_SUPPORT(ax_hold_arguments),
+};
+
+void ax_hold_defaults(void* arguments)
+{
+    ((ax_hold_arguments*)arguments)->hold.weight = 1;
+}
+
 const char* const ax_at_words[4] = {
     [AX_AT_FLAT] = "flat", [AX_AT_DEPLOYED] = "deployed", [AX_AT_SHEET] = "sheet", [AX_AT_POINTS] = "points"};
 

@@ -32,6 +32,14 @@ typedef struct ax_holding {
         .doc = "Holds also under the load, as a support."                                                              \
     }
 
+// Arguments, fields and defaults of operators that ask for nothing else.
+typedef struct ax_hold_arguments {
+    ax_holding hold;
+} ax_hold_arguments;
+enum { AX_HOLD_FIELDS = 4 };
+extern const ax_field ax_hold_fields[AX_HOLD_FIELDS];
+void ax_hold_defaults(void* arguments);
+
 // Resolves name and hinges (of which `fewest` are needed) and hands the constraint to the form. `constraint` has the rest.
 ax_status ax_hold_put(const ax_operator_context* context, const ax_holding* hold, int fewest,
                       ax_form_constraint* constraint, ax_error* error);

@@ -186,3 +186,25 @@ ax_status ax_rim_control(const ax_operator_context* context, const ax_control* c
     ax_free(hinges);
     return status;
 }
+
+void ax_rim_through_defaults(void* through)
+{
+    *(ax_rim_through*)through = (ax_rim_through){.hinges = "rim", .closed = true};
+}
+
+const char* ax_rim_through_check(const void* through, int* field)
+{
+    const ax_rim_through* a = through;
+    *field = 1;
+    return a->closed && a->points.count < 3 ? "a closed curve needs three points." : NULL;
+}
+
+ax_status ax_rim_slide_through(const ax_operator_context* context, const ax_rim_through* through, ax_curve_kind kind,
+                               ax_error* error)
+{
+    const ax_curve_shape curve = {.kind = kind,
+                                  .closed = through->closed,
+                                  .count = through->points.count,
+                                  .points = (const double(*)[3])through->points.values};
+    return ax_rim_slide(context, through->hinges, &curve, error);
+}

@@ -27,6 +27,18 @@ ax_status ax_rim_slide(const ax_operator_context* context, const char* words, co
 #define AX_RIM_HINGES(T)                                                                                               \
     AX_TEXT(T, hinges, "Hinges", .doc = "Selection of rim hinges that it holds, in place of what held them.")
 
+// Operators that let the rim slide on a curve through points.
+typedef struct ax_rim_through {
+    const char* hinges;
+    ax_points points;
+    bool closed;
+} ax_rim_through;
+void ax_rim_through_defaults(void* through);
+const char* ax_rim_through_check(const void* through, int* field); // its points are field 1
+ax_status ax_rim_slide_through(const ax_operator_context* context, const ax_rim_through* through, ax_curve_kind kind,
+                               ax_error* error);
+#define AX_RIM_CLOSED AX_FLAG(ax_rim_through, closed, "Closed", .doc = "Whether the last is joined to the first.")
+
 // Operators on one control point of the curve that a part slides on.
 typedef struct ax_control {
     const char* hinges; // the first one chooses the part

@@ -1,27 +1,9 @@
 #include "operator/hold.h"
 
-typedef struct arguments {
-    ax_holding hold;
-} arguments;
-
-static void defaults(void* given)
-{
-    arguments* a = given;
-    a->hold.weight = 1;
-}
-
-static const ax_field fields[] = {
-    AX_HOLD_NAME(arguments),
-    AX_HOLD_HINGES(arguments, .required = true),
-    AX_HOLD_WEIGHT(arguments),
-    AX_HOLD_SUPPORT(arguments),
-};
-
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)
 {
-    const arguments* a = given;
     ax_form_constraint constraint = {.kind = AX_HELD_CIRCLE};
-    return ax_hold_put(context, &a->hold, 4, &constraint, error);
+    return ax_hold_put(context, &((const ax_hold_arguments*)given)->hold, 4, &constraint, error);
 }
 
 const ax_operator_type ax_operator_hold_circle = {
@@ -29,10 +11,10 @@ const ax_operator_type ax_operator_hold_circle = {
     .title = "Hold on a circle",
     .doc = "Holds hinges on one circle in space, whichever fits best.",
     .group = "constraint",
-    .fields = fields,
-    .field_count = AX_COUNT(fields),
-    .size = sizeof(arguments),
-    .defaults = defaults,
+    .fields = ax_hold_fields,
+    .field_count = AX_HOLD_FIELDS,
+    .size = sizeof(ax_hold_arguments),
+    .defaults = ax_hold_defaults,
     .settles = true,
     .apply = apply,
 };

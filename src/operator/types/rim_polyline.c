@@ -1,39 +1,15 @@
 #include "operator/rim.h"
 
-typedef struct arguments {
-    const char* hinges;
-    ax_points points;
-    bool closed;
-} arguments;
-
-static void defaults(void* given)
-{
-    arguments* a = given;
-    *a = (arguments){.hinges = "rim", .closed = true};
-}
-
 static const ax_field fields[] = {
-    AX_RIM_HINGES(arguments),
-    AX_POINTS(arguments, points, "Corners", 3, 2, .hi = 10000, .required = true,
+    AX_RIM_HINGES(ax_rim_through),
+    AX_POINTS(ax_rim_through, points, "Corners", 3, 2, .hi = 10000, .required = true,
               .doc = "Corners of the curve in space, in order, the way the rim runs: counter-clockwise."),
-    AX_FLAG(arguments, closed, "Closed", .doc = "Whether the last is joined to the first."),
+    AX_RIM_CLOSED,
 };
-
-static const char* check(const void* given, int* field)
-{
-    const arguments* a = given;
-    *field = 1;
-    return a->closed && a->points.count < 3 ? "a closed curve needs three points." : NULL;
-}
 
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)
 {
-    const arguments* a = given;
-    const ax_curve_shape curve = {.kind = AX_CURVE_POLYLINE,
-                                  .closed = a->closed,
-                                  .count = a->points.count,
-                                  .points = (const double(*)[3])a->points.values};
-    return ax_rim_slide(context, a->hinges, &curve, error);
+    return ax_rim_slide_through(context, given, AX_CURVE_POLYLINE, error);
 }
 
 const ax_operator_type ax_operator_rim_polyline = {
@@ -43,9 +19,9 @@ const ax_operator_type ax_operator_rim_polyline = {
     .group = "boundary",
     .fields = fields,
     .field_count = AX_COUNT(fields),
-    .size = sizeof(arguments),
-    .defaults = defaults,
-    .check = check,
+    .size = sizeof(ax_rim_through),
+    .defaults = ax_rim_through_defaults,
+    .check = ax_rim_through_check,
     .settles = true,
     .apply = apply,
 };
