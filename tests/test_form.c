@@ -357,6 +357,33 @@ static void shapes_do_not_depend_on_resolution(void** state)
     assert_near(coarse[1], fine[1], 0.02 * 2.6);
 }
 
+static void painted_curvature_is_summed_before_any_solve(void** state)
+{
+    (void)state;
+    // over a disc of radius r the metric l / (1 + k r^2) has curvature 4 pi k r^2 / (1 + k r^2); rings end at eighths of the radius, and
+    // the border has no neighbours to measure against
+    ax_form* form = disk(2500, 1.2);
+    paint(form, sphere);
+    ax_form_report r = measured(form);
+    double least = 4 * AX_PI * 0.35 * 0.8 * 0.8 / (1 + 0.35 * 0.8 * 0.8), most = 4 * AX_PI * 0.35 / 1.35;
+    assert_true(r.curvature_max > least && r.curvature_max < most);
+    ax_form_report_free(&r);
+
+    // a sharp dab beside the middle turns over as one in the middle does
+    ax_form_view view = ax_form_look(form);
+    double* values = AX_NEW(double, view.linkage->triangle_count);
+    for (int t = 0; t < view.linkage->triangle_count; ++t) {
+        double x = view.sheet[view.linkage->triangles[t][0]][0] - 0.5, y = view.sheet[view.linkage->triangles[t][0]][1];
+        values[t] = x * x + y * y < 0.09 ? 1.8 : 1.1;
+    }
+    ax_form_prescribe(form, values);
+    ax_free(values);
+    r = measured(form);
+    assert_true(r.curvature_max > 2 * AX_PI);
+    ax_form_report_free(&r);
+    ax_form_free(form);
+}
+
 static void too_little_material_is_told(void** state)
 {
     (void)state;
@@ -413,6 +440,7 @@ int main(void)
         cmocka_unit_test(a_cancelled_settle_changes_nothing),
         cmocka_unit_test(constraints_hold),
         cmocka_unit_test(shapes_do_not_depend_on_resolution),
+        cmocka_unit_test(painted_curvature_is_summed_before_any_solve),
         cmocka_unit_test(too_little_material_is_told),
         cmocka_unit_test(unusable_requests_are_refused),
     };
