@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Links in the documentation lead somewhere, and the index knows every page."""
 import re
+import subprocess
 import unittest
 from pathlib import Path
 
@@ -40,6 +41,15 @@ class Docs(unittest.TestCase):
         links = LINK.findall((ROOT / "README.md").read_text())
         for name in ("docs/index.md", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE"):
             self.assertIn(name, links)
+
+    def test_pages_are_published_without_asking_another_host(self):
+        done = subprocess.run([ROOT / "tools/site.sh"], capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        site = ROOT / "build/docs/site"
+        for page in (ROOT / "docs").glob("*.md"):
+            text = (site / "docs" / f"{page.stem}.html").read_text()
+            self.assertNotRegex(text, r'(?:src|rel="stylesheet" href)="(?:https?:)?//')
+        self.assertIn("Auxshell", (site / "index.html").read_text())
 
 
 if __name__ == "__main__":
