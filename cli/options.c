@@ -61,6 +61,13 @@ static ax_status parse_value(const command_option* o, const char* text, void* va
     case OPTION_TEXT:
         *(const char**)value = text;
         return *text ? AX_OK : refuse(o, text, "a name that is not empty", error);
+    case OPTION_WORDS: {
+        word_list* list = value;
+        if (list->count == (int)(sizeof list->words / sizeof *list->words))
+            return ax_fail(error, AX_USAGE, "\"%s\" is one name too many.", text);
+        list->words[list->count++] = text;
+        return *text ? AX_OK : refuse(o, text, "names that are not empty", error);
+    }
     case OPTION_INTEGER: {
         char* end;
         errno = 0;
@@ -137,7 +144,7 @@ static ax_status unknown_option(const command* c, const char* name, ax_error* er
 static const command_option* next_operand(const command* c, int used)
 {
     for (int k = 0; k < c->option_count; ++k)
-        if (c->options[k].operand && used-- == 0)
+        if (c->options[k].operand && (used-- == 0 || c->options[k].kind == OPTION_WORDS))
             return &c->options[k];
     return NULL;
 }

@@ -12,8 +12,14 @@ typedef enum option_kind {
     OPTION_BAND,    // double[2], lo <= first < second <= hi, written FIRST,SECOND
     OPTION_CHOICE,  // int: `first` plus the place of the word in `choices`
     OPTION_TEXT,    // const char*, as given
+    OPTION_WORDS,   // word_list: an operand that takes all names from its place on
     OPTION_OTHER,   // what `parse` makes of it
 } option_kind;
+
+typedef struct word_list {
+    int count;
+    const char* words[64];
+} word_list;
 
 typedef struct command_option {
     const char* name;  // "--triangles"; an operand has its placeholder here: "TARGET"

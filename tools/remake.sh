@@ -2,7 +2,7 @@
 # Makes what is drawn or written by the program itself again: example surfaces, README pictures, command reference.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
-install_packages run test
+install_packages run test docs
 build release
 bin=$root/build/release/bin
 mkdir -p "$root/docs/pictures"
@@ -24,3 +24,10 @@ for name in hybrid-shell mars-habitat pavilion; do
   "$bin/auxshell" run "$root/examples/$name.json" -o "$scratch/$name.auxshell" >/dev/null
   "$bin/auxshell" export "$scratch/$name.auxshell" -o "$root/docs/pictures/$name.png"
 done
+# Pictures of the gallery as WebP: a tenth of the size.
+"$bin/auxshell" gallery --page "$root/docs/gallery.md" >/dev/null
+for picture in "$root"/docs/pictures/gallery/*.png; do
+  cwebp -quiet -q 88 "$picture" -o "${picture%.png}.webp"
+  rm "$picture"
+done
+sed -i 's/\(pictures\/gallery\/[a-z0-9-]*\)\.png/\1.webp/g' "$root/docs/gallery.md"
