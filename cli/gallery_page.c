@@ -105,10 +105,10 @@ ax_status gallery_page_add(gallery_page* p, const char* name, const ax_recipe* r
     title_of(name, title);
     fprintf(p->sections, "## %s\n\n", title);
     write_note(p, recipe);
-    snprintf(file, sizeof file, "../render/%s.webp", name);
+    snprintf(file, sizeof file, "../photo-%s.jpg", name);
     status = output_join(p->pictures, file, path, sizeof path, error);
     if (status == AX_OK && access(path, R_OK) == 0)
-        fprintf(p->sections, "![%s](pictures/render/%s.webp)\n\n", title, name);
+        fprintf(p->sections, "![%s](pictures/photo-%s.jpg)\n\n", title, name);
     for (int k = 0; k < 2 && status == AX_OK; ++k) {
         const char* state = ax_state_name(states[k]);
         snprintf(file, sizeof file, "%s-%s.png", name, state);
