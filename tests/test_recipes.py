@@ -7,7 +7,7 @@ import time
 import unittest
 
 import support.tap
-from support.command import AUXSHELL, ROOT, CommandCase
+from support.command import AUXSHELL, ROOT, CommandCase, run
 
 SMALL = [
     {"op": "start_circle", "radius": 1, "triangles": 150, "scale": 1.2},
@@ -70,8 +70,6 @@ class Recipes(CommandCase):
             (3, "no operators", []),
             (3, "Operator 2, formula: ", [SMALL[0], {"op": "formula", "formula": "1 +"}]),
             (3, "none.csv", [SMALL[0], {"op": "table", "file": "none.csv"}]),
-            (4, "Operator 2, paint_curvature: ",
-             [SMALL[0], {"op": "paint_curvature", "points": [[0, 0]], "radius": 1, "curvature": 20}]),
             (2, "12 to 2000000", [{"op": "start_circle", "radius": 1, "edge": 1}]),
         ):
             with self.subTest(word=word):
@@ -79,6 +77,16 @@ class Recipes(CommandCase):
         self.refuse(3, "cannot be read", "run", self.folder / "none.json", *out)
         (self.folder / "bad.json").write_text('{"format": "auxshell-recipe",}')
         self.refuse(3, "bad.json, line 1, column", "run", self.folder / "bad.json", *out)
+
+    def test_what_cannot_exist_leaves_what_came_before(self):
+        out = self.folder / "x.auxshell"
+        too_much = {"op": "paint_curvature", "points": [[0, 0]], "radius": 1, "curvature": 20}
+        done = run("run", self.write([SMALL[0], too_much, {"op": "settle"}]), "-o", out)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("Operator 2, paint_curvature: ", done.stderr)
+        self.assertIn("holds what came before", done.stderr)
+        self.assertIn("1 of 3 steps is applied", self.succeed("history", out))
+        self.export(out)
 
     def test_watching_plays_from_the_first_change(self):
         recipe = self.write(SMALL)

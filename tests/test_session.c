@@ -577,7 +577,8 @@ static void cancelling_changes_nothing(void** state)
     ax_recipe* recipe = recipe_of(2, (const char*[]){CIRCLE(60), "{\"op\": \"settle\"}"});
     int left = 1;
     ax_error error;
-    assert_int_equal(ax_session_create(other, &(ax_session_start){.recipe = recipe, .until = -1, .keep = true},
+    assert_int_equal(ax_session_create(other,
+                                       &(ax_session_start){.recipe = recipe, .until = -1, .keep = AX_KEEP_BEFORE_ANY},
                                        &(ax_progress){cancel, &left}, &s, &error),
                      AX_CANCELLED);
     assert_null(s);
@@ -597,13 +598,15 @@ static void a_recipe_that_fails_makes_nothing_or_what_came_before(void** state)
     assert_int_equal(ax_session_create(path, &start, NULL, &s, &error), AX_BAD_INPUT);
     assert_says(&error, "nowhere");
     assert_int_equal(access(path, F_OK), -1);
-    start.keep = true;
+    start.keep = AX_KEEP_BEFORE_UNREALISABLE; // it could exist, were its words right
+    assert_int_equal(ax_session_create(path, &start, NULL, &s, &error), AX_BAD_INPUT);
+    start.keep = AX_KEEP_BEFORE_ANY;
     assert_ok(ax_session_create(path, &start, NULL, &s, &error), &error);
     assert_int_equal(ax_session_at(s), 2);
     assert_int_equal(ax_recipe_count(ax_session_recipe(s)), 4);
     assert_int_equal(ax_session_failed(s, NULL), 2);
     ax_session_close(s);
-    start.keep = false, start.until = 2;
+    start.keep = AX_KEEP_NOTHING, start.until = 2;
     assert_ok(ax_session_create(path, &start, NULL, &s, &error), &error);
     assert_int_equal(ax_recipe_count(ax_session_recipe(s)), 2);
     assert_int_equal(ax_session_failed(s, NULL), -1);

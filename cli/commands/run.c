@@ -90,8 +90,12 @@ static ax_status create(const arguments* a, const ax_recipe* recipe, ax_session*
     if (strlen(a->recipe) >= sizeof folder)
         return ax_fail(error, AX_USAGE, "The name of the recipe is longer than the system allows.");
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - a->recipe) + 1 : 1, slash ? a->recipe : ".");
-    const ax_session_start start = {
-        .recipe = recipe, .until = a->until, .folder = folder, .program = "auxshell run", .played = print_step};
+    const ax_session_start start = {.recipe = recipe,
+                                    .until = a->until,
+                                    .folder = folder,
+                                    .program = "auxshell run",
+                                    .played = print_step,
+                                    .keep = AX_KEEP_BEFORE_UNREALISABLE};
     return ax_session_create(a->out, &start, progress_reporter(), session, error);
 }
 
@@ -109,7 +113,6 @@ static int unchanged(const ax_recipe* recipe, const ax_session* session)
 // The document goes on from what the recipes have in common, as one change that can be undone.
 static ax_status replace(const arguments* a, ax_recipe* recipe, ax_session* session, ax_error* error)
 {
-    const char* why;
     for (int k = ax_recipe_count(recipe); k > steps_asked(a, recipe); --k)
         ax_recipe_remove(recipe, k - 1);
     int first = unchanged(recipe, session);
@@ -120,8 +123,6 @@ static ax_status replace(const arguments* a, ax_recipe* recipe, ax_session* sess
         ax_recipe_words(recipe, k, words);
         print_step(NULL, k, words);
     }
-    if (status == AX_OK && ax_session_failed(session, &why) >= 0)
-        status = ax_fail(error, AX_FAILED, "%s The document holds what came before.", why);
     return status;
 }
 
@@ -142,7 +143,11 @@ static ax_status play(const arguments* a, ax_session** session, ax_error* error)
         return status;
     print_state(ax_session_form(*session));
     printf("\nWrote %s: %d triangles.\n", a->out, ax_form_look(ax_session_form(*session)).linkage->triangle_count);
-    return AX_OK;
+    const char* why;
+    if (ax_session_failed(*session, &why) < 0)
+        return AX_OK;
+    fflush(stdout);
+    return ax_fail(error, AX_CANNOT_REALISE, "%s The document holds what came before.", why);
 }
 
 // Waits until the file has other times or another size; false after an interrupt. Editors that write beside and rename leave
@@ -191,11 +196,9 @@ static ax_status run(const void* given, ax_error* error)
 const command command_run = {
     .name = "run",
     .summary = "play a recipe: form-finding from scratch or from a surface",
-    .text = "Plays the operators of a recipe one after the other, prints what came of it, and writes the document. "
-            "\"auxshell "
-            "operators\" lists the operators; docs/recipes.md explains the format. Files that a recipe names are "
-            "looked for "
-            "in its folder.",
+    .text = "Plays the operators of a recipe one after the other, prints what came of it, and writes the document. If an "
+            "operator asks for what cannot exist, the document holds what came before it. \"auxshell operators\" lists the "
+            "operators; docs/recipes.md explains the format. Files that a recipe names are looked for in its folder.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),

@@ -14,6 +14,11 @@ typedef struct ax_session ax_session;
 
 // A new document at `path`, which is written as a whole once its steps have been played: a file there before stays until then, and
 // is replaced. Steps 0 .. until - 1 of `recipe` (NULL: none; until < 0: all) are applied, each of them a moment of the history.
+typedef enum ax_keep {
+    AX_KEEP_NOTHING,
+    AX_KEEP_BEFORE_UNREALISABLE, // when a later step asks for what cannot exist: AX_CANNOT_REALISE
+    AX_KEEP_BEFORE_ANY,          // whatever goes wrong in a later step
+} ax_keep;
 typedef struct ax_session_start {
     const ax_recipe* recipe; // copied
     int until;
@@ -21,7 +26,7 @@ typedef struct ax_session_start {
     const char* program; // who edits, for others that open the document: "auxshell studio"; NULL: "another program"
     void (*played)(void* context, int k, const char* words); // called after step k was applied; NULL: not
     void* context;
-    bool keep; // when a step other than the first fails, keep the steps before it (see ax_session_failed)
+    ax_keep keep; // when to succeed with the steps before one that fails (see ax_session_failed)
 } ax_session_start;
 ax_status ax_session_create(const char* path, const ax_session_start* start, const ax_progress* progress,
                             ax_session** out, ax_error* error);

@@ -536,7 +536,10 @@ static ax_status play_start(ax_session* s, const ax_session_start* start, const 
         ax_error inner = {0};
         status = apply(s, ax_recipe_operator(start->recipe, k), k, // the first step is where the history begins
                        ax_progress_within(&slot, progress, (double)k / until, (double)(k + 1) / until), NULL, &inner);
-        if (status != AX_OK && status != AX_CANCELLED && k > 0 && start->keep)
+        bool enough = start->keep == AX_KEEP_BEFORE_ANY
+                          ? status != AX_OK && status != AX_CANCELLED
+                          : start->keep == AX_KEEP_BEFORE_UNREALISABLE && status == AX_CANNOT_REALISE;
+        if (enough && k > 0)
             return keep_failing(s, start->recipe, until, inner.message, error);
         if (status != AX_OK && error)
             *error = inner;

@@ -316,7 +316,7 @@ static ax_status create(desk* d, const ax_recipe* recipe, ax_error* error)
 {
     const ax_progress progress = desk_progress(d);
     const ax_session_start start = {
-        .recipe = recipe, .until = -1, .folder = d->folder, .program = program, .keep = true};
+        .recipe = recipe, .until = -1, .folder = d->folder, .program = program, .keep = AX_KEEP_BEFORE_ANY};
     ax_status status = ax_session_create(d->path, &start, &progress, &d->session, error);
     const ax_moment* moments;
     int now;
