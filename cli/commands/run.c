@@ -196,9 +196,10 @@ static ax_status run(const void* given, ax_error* error)
 const command command_run = {
     .name = "run",
     .summary = "play a recipe: form-finding from scratch or from a surface",
-    .text = "Plays the operators of a recipe one after the other, prints what came of it, and writes the document. If an "
-            "operator asks for what cannot exist, the document holds what came before it. \"auxshell operators\" lists the "
-            "operators; docs/recipes.md explains the format. Files that a recipe names are looked for in its folder.",
+    .text =
+        "Plays the operators of a recipe one after the other, prints what came of it, and writes the document. If an "
+        "operator asks for what cannot exist, the document holds what came before it. \"auxshell operators\" lists the "
+        "operators; docs/recipes.md explains the format. Files that a recipe names are looked for in its folder.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),
