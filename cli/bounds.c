@@ -62,9 +62,18 @@ const json_t* bounds_of(const bounds* b, const char* example)
     return json_object_get(b->examples, example);
 }
 
+bool bounds_space(const json_t* example, const ax_design* design, ax_space* space)
+{
+    json_t* headroom = json_object_get(example, "headroom");
+    double metres = json_is_number(headroom) ? json_number_value(headroom) : 2.1;
+    return ax_space_measure(design, design->simulated ? AX_STATE_SIMULATED : AX_STATE_DEPLOYED, NAN,
+                            metres / ax_unit_in_metres(design->unit), space, NULL) == AX_OK;
+}
+
 typedef struct judged {
     const ax_design* design;
     const ax_form_report* form;
+    const json_t* example;
     bool loaded;
     json_t* broken;
 } judged;
@@ -106,6 +115,13 @@ static double value_of(const judged* j, const char* key, bool* known)
                 0) // an even bend is a wish, never exact
                 worst = fmax(worst, j->form->held[k].residual / j->design->report.edge_mean);
         return worst;
+    }
+    bool floor = strcmp(key, "floor") == 0, volume = strcmp(key, "volume") == 0;
+    if (floor || volume || strcmp(key, "headroom_share") == 0) {
+        ax_space s;
+        if (!bounds_space(j->example, j->design, &s))
+            return NAN;
+        return floor ? s.floor : volume ? s.volume : s.headroom_area / s.floor;
     }
     for (int k = 0; k < count; ++k)
         if (strcmp(figures[k].key, key) == 0)
@@ -160,7 +176,7 @@ static void check_load(const judged* j, const char* asked)
 
 json_t* bounds_check(const bounds* b, const json_t* example, const ax_design* design, const ax_form_report* form)
 {
-    judged j = {design, form, design->load.kind != AX_LOAD_NONE, json_array()};
+    judged j = {design, form, example, design->load.kind != AX_LOAD_NONE, json_array()};
     int count;
     const ax_figure* figures = ax_report_figures(&count);
     for (int k = 0; k < count; ++k)

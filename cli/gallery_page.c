@@ -1,5 +1,6 @@
 #include "gallery_page.h"
 
+#include "bounds.h"
 #include "output.h"
 #include "report.h"
 
@@ -83,6 +84,16 @@ static void write_forces(gallery_page* p, const ax_design* d)
             r->edge_force_min, r->edge_force_max, r->hinge_force_max, r->load_total);
 }
 
+// Of what is blown up, people use the inside.
+static void write_space(gallery_page* p, const json_t* example, const ax_design* d)
+{
+    ax_space s;
+    const char* unit = ax_unit_name(d->unit);
+    if (d->load.kind == AX_LOAD_INFLATION && d->unit == AX_METRE && bounds_space(example, d, &s))
+        fprintf(p->sections, "Inside: %.3g %s3 over %.3g %s2 of floor, %.0f %% of it %.3g %s high or more.\n\n",
+                s.volume, unit, s.floor, unit, 100 * s.headroom_area / s.floor, s.headroom, unit);
+}
+
 // The note is the recipe's own, which the reader of operators does not keep in a field.
 static void write_note(gallery_page* p, const ax_recipe* recipe)
 {
@@ -129,7 +140,7 @@ ax_status gallery_page_add(gallery_page* p, const char* name, const ax_recipe* r
         fprintf(p->sections, " by %.3g", r->deployed_bounds[2]);
     fprintf(p->sections, " %s. ", unit);
     if (d->simulated)
-        write_forces(p, d);
+        write_forces(p, d), write_space(p, example, d);
     else
         fputs("It opens in the plane, by hand, under no load.\n\n", p->sections);
     for (int k = 0; k < form->finding_count; ++k)
