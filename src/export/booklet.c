@@ -2,7 +2,6 @@
 #include "export/booklet.h"
 
 #include "base/vec.h"
-#include "export/page.h"
 
 #include <cairo-pdf.h>
 #include <stdarg.h>
@@ -12,6 +11,36 @@
 
 static const double width = AX_BOOKLET_WIDTH, height = AX_BOOKLET_HEIGHT, margin = AX_BOOKLET_MARGIN;
 static const double row_height = 4.6, table_size = 3; // mm
+static const double point = 72 / 25.4;                // of PDF, a mm
+
+void ax_booklet_open(ax_booklet* b, const ax_design* design, const ax_cut_plan* plan, const char* path)
+{
+    char date[40] = "2000-01-01T00:00:00Z"; // when the plan has none: cairo would take the time of writing
+    *b = (ax_booklet){.design = design, .plan = plan, .mm = 1000 * ax_unit_in_metres(design->unit)};
+    b->assembly = ax_assembly_make(design, plan);
+    b->frame = ax_frame_of(design);
+    b->surface = cairo_pdf_surface_create(path, point * width, point * height);
+    if (strlen(plan->date) == 10)
+        snprintf(date, sizeof date, "%.10sT00:00:00Z", plan->date);
+    cairo_pdf_surface_set_metadata(b->surface, CAIRO_PDF_METADATA_CREATE_DATE, date);
+    cairo_pdf_surface_set_metadata(b->surface, CAIRO_PDF_METADATA_CREATOR, "Auxshell");
+    cairo_pdf_surface_set_metadata(b->surface, CAIRO_PDF_METADATA_TITLE, plan->title);
+    b->cairo = cairo_create(b->surface);
+    cairo_select_font_face(b->cairo, "Inter", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+}
+
+ax_status ax_booklet_close(ax_booklet* b, const char* path, ax_error* error)
+{
+    cairo_destroy(b->cairo);
+    cairo_surface_finish(b->surface);
+    cairo_status_t status = cairo_surface_status(b->surface);
+    cairo_surface_destroy(b->surface);
+    ax_assembly_free(&b->assembly);
+    ax_frame_free(&b->frame);
+    return status == CAIRO_STATUS_SUCCESS
+               ? AX_OK
+               : ax_fail(error, AX_FAILED, "%s could not be written: %s.", path, cairo_status_to_string(status));
+}
 
 ax_box ax_booklet_body(void)
 {
@@ -49,7 +78,7 @@ void ax_booklet_page(ax_booklet* b, const char* section, const char* heading, co
 {
     char foot[64];
     cairo_save(b->cairo);
-    cairo_scale(b->cairo, ax_page_points(1), ax_page_points(1));
+    cairo_scale(b->cairo, point, point);
     ++b->page;
     if (section)
         cairo_pdf_surface_add_outline(b->surface, CAIRO_PDF_OUTLINE_ROOT, section, "", CAIRO_PDF_OUTLINE_FLAG_OPEN);

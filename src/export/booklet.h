@@ -25,6 +25,10 @@ typedef struct ax_box {
 // What is free below the heading and above the foot.
 ax_box ax_booklet_body(void);
 
+void ax_booklet_open(ax_booklet* b, const ax_design* design, const ax_cut_plan* plan, const char* path);
+// Releases everything; AX_FAILED if the disk did not take the file.
+ax_status ax_booklet_close(ax_booklet* b, const char* path, ax_error* error);
+
 // Begins a page with a heading and a line of explanation below; `section` also names it in the outline, NULL: of the same section.
 void ax_booklet_page(ax_booklet* b, const char* section, const char* heading, const char* line);
 void ax_booklet_end_page(ax_booklet* b);

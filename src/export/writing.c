@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
 double (*ax_state_places(const ax_design* design, ax_state state))[3]
@@ -57,21 +58,95 @@ ax_status ax_export_close(FILE* out, const char* path, ax_error* error)
     return sound ? AX_OK : fail_to_write(path, error);
 }
 
-void ax_put_mm(FILE* out, double mm)
+// Room for `more` characters at w->at + w->count.
+static char* reserve(ax_writer* w, size_t more)
 {
-    assert(fabs(mm) < 1e12);
-    long long units = llround(mm * 1e4), left = units < 0 ? -units : units;
-    char text[24], *at = text + sizeof text;
-    int decimals = 4;
-    while (decimals && left % 10 == 0)
-        left /= 10, --decimals;
-    for (bool first = true; first || left || decimals >= 0; first = false) {
-        if (decimals == 0 && !first)
-            *--at = '.';
-        *--at = (char)('0' + left % 10);
-        left /= 10, --decimals;
+    enum { ROOM = 1 << 16 };
+    if (w->room - w->count < more && w->count && w->out) {
+        fwrite(w->at, 1, w->count, w->out);
+        w->count = 0;
     }
+    if (w->room - w->count < more) {
+        size_t twice = 2 * w->room > ROOM ? 2 * w->room : ROOM;
+        w->room = twice > w->count + more ? twice : w->count + more;
+        w->at = ax_realloc(w->at, w->room, 1);
+    }
+    return w->at + w->count;
+}
+
+static void add(ax_writer* w, const char* characters, size_t count)
+{
+    memcpy(reserve(w, count), characters, count);
+    w->count += count;
+}
+
+void ax_put_words(ax_writer* w, const char* words)
+{
+    add(w, words, strlen(words));
+}
+
+void ax_put_format(ax_writer* w, const char* format, ...)
+{
+    char words[256];
+    va_list arguments;
+    va_start(arguments, format);
+    int count = vsnprintf(words, sizeof words, format, arguments);
+    va_end(arguments);
+    assert(count >= 0 && count < (int)sizeof words);
+    add(w, words, (size_t)count);
+}
+
+// A number of units, `decimals` of whose digits stand behind the point.
+static void add_units(ax_writer* w, long long units, int decimals)
+{
+    char digits[32], *at = digits + sizeof digits;
+    unsigned long long left = units < 0 ? 0 - (unsigned long long)units : (unsigned long long)units;
+    for (int behind = decimals; behind > 0; --behind, left /= 10)
+        *--at = (char)('0' + left % 10);
+    if (decimals)
+        *--at = '.';
+    do
+        *--at = (char)('0' + left % 10);
+    while (left /= 10);
     if (units < 0)
         *--at = '-';
-    fwrite(at, 1, (size_t)(text + sizeof text - at), out);
+    add(w, at, (size_t)(digits + sizeof digits - at));
+}
+
+void ax_put_whole(ax_writer* w, long long value)
+{
+    add_units(w, value, 0);
+}
+
+static const double scales[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+
+void ax_put_fixed(ax_writer* w, double value, int decimals)
+{
+    assert(decimals >= 0 && decimals < (int)(sizeof scales / sizeof *scales));
+    assert(fabs(value) * scales[decimals] < 1e18);
+    add_units(w, llround(value * scales[decimals]), decimals);
+}
+
+void ax_put_mm(ax_writer* w, double mm)
+{
+    assert(fabs(mm) < 1e12);
+    long long units = llround(mm * 1e4);
+    int decimals = 4;
+    for (; decimals && units % 10 == 0; --decimals)
+        units /= 10;
+    add_units(w, units, decimals);
+}
+
+void ax_writer_free(ax_writer* w)
+{
+    ax_free(w->at);
+    *w = (ax_writer){0};
+}
+
+ax_status ax_writer_close(ax_writer* w, const char* path, ax_error* error)
+{
+    FILE* out = w->out;
+    fwrite(w->at, 1, w->count, out);
+    ax_writer_free(w);
+    return ax_export_close(out, path, error);
 }

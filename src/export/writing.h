@@ -18,6 +18,20 @@ FILE* ax_export_open(const char* path, ax_error* error); // NULL on failure
 // Closes; AX_FAILED if any write since opening has failed.
 ax_status ax_export_close(FILE* out, const char* path, ax_error* error);
 
-// Writes millimetres to a tenth of a micrometre, without trailing zeros and whatever the locale: cut files hold millions of numbers,
-// which printf would take most of the time for. |mm| < 1e12.
-void ax_put_mm(FILE* out, double mm);
+// Text on its way to a file, or kept if `out` is NULL: cut files hold millions of numbers, for which printf, and a lock for every
+// character, would take most of the time. Begins as {.out = file} or {0}.
+typedef struct ax_writer {
+    FILE* out;
+    char* at;
+    size_t count, room;
+} ax_writer;
+void ax_put_words(ax_writer* w, const char* words);
+void ax_put_format(ax_writer* w, const char* format, ...) __attribute__((format(printf, 2, 3)));
+void ax_put_whole(ax_writer* w, long long value);
+// As "%.*f" in the C locale, without "-0"; at most 9 decimals, |value| 10^decimals < 1e18.
+void ax_put_fixed(ax_writer* w, double value, int decimals);
+// Millimetres to a tenth of a micrometre, without trailing zeros. |mm| < 1e12.
+void ax_put_mm(ax_writer* w, double mm);
+void ax_writer_free(ax_writer* w); // of what is kept
+// Writes what is left, frees and closes; AX_FAILED if any write since opening has failed.
+ax_status ax_writer_close(ax_writer* w, const char* path, ax_error* error);

@@ -5,6 +5,7 @@
 // Strokes are separated by blanks, points are pairs of digits, x then y, on a grid of 4 by 6.
 static const char* const glyphs[128] = {
     [' '] = "",
+    ['%'] = "0046 0506161505 3031414030",
     ['\''] = "2625",
     ['('] = "36252130",
     [')'] = "16252110",
