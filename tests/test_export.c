@@ -2,7 +2,9 @@
 #include "ax/export.h"
 
 #include "ax/report.h"
+#include "base/random.h"
 #include "base/vec.h"
+#include "export/writing.h"
 #include "fabricate/stroke_font.h"
 #include "picture/colour.h"
 #include "support/sample.h"
@@ -982,7 +984,7 @@ static drawing draw(const char* text)
 static void letters_differ_and_keep_to_their_cells(void** state)
 {
     (void)state;
-    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-+=.,:;/()'_";
+    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-+=.,:;/()'_%";
     drawing seen[sizeof letters];
     for (size_t k = 0; letters[k]; ++k) {
         char text[] = {letters[k], '\0'};
@@ -1007,6 +1009,40 @@ static void text_is_set_letter_by_letter(void** state)
     assert_near(ax_stroke_width("\xc3\xa4"), ax_stroke_width("A"), 0); // one character, two bytes
     assert_string_equal(draw("\xc3\xa4").text, draw("\xe2\x82\xac").text);
     assert_string_equal(draw("  ").text, "");
+}
+
+// Millions of numbers are set without printf, and must be read as the same.
+static void numbers_are_set_as_printf_sets_them(void** state)
+{
+    (void)state;
+    ax_random random = {20260531};
+    print_message("seed %llu\n", (unsigned long long)random.state);
+    static const double special[] = {0, -0.0, 1e-7, -1e-7, 0.5, -0.05, 9.99999995, 12345678, -999999.9999996};
+    for (int k = 0; k < 20000; ++k) {
+        double value = k < 9 ? special[k] : ax_random_uniform(&random, -1, 1) * pow(10, k % 7);
+        int decimals = k % 9 % (12 - k % 7); // no more digits than a double holds for sure
+        char expected[40];
+        ax_writer w = {0};
+        ax_put_fixed(&w, value, decimals);
+        ax_put_words(&w, " ");
+        ax_put_mm(&w, value);
+        ax_put_words(&w, " ");
+        ax_put_whole(&w, -k);
+        ax_put_format(&w, "%c", 0);
+        char *end, *mm, *whole;
+        assert_near(strtod(w.at, &end), value, 0.5000001 * pow(10, -decimals));
+        snprintf(expected, sizeof expected, "%.*f", decimals, value);
+        const char* plain = expected + (*expected == '-' && strtod(expected, NULL) == 0); // no "-0"
+        assert_int_equal(end - w.at, strlen(plain));
+        if (k >= 9) // ties aside, which no random number is
+            assert_memory_equal(w.at, plain, strlen(plain));
+        mm = end + 1;
+        assert_near(strtod(mm, &end), value, 0.5000001e-4);
+        assert_true(!memchr(mm, '.', (size_t)(end - mm)) || (end[-1] != '0' && end[-1] != '.'));
+        assert_int_equal(strtol(end + 1, &whole, 10), -k);
+        assert_int_equal(*whole, 0);
+        ax_writer_free(&w);
+    }
 }
 
 int main(void)
@@ -1035,6 +1071,7 @@ int main(void)
         cmocka_unit_test(svg_is_well_formed_whatever_the_title),
         cmocka_unit_test(sheets_are_files_beside_an_overview),
         cmocka_unit_test(coupons_go_to_cut_files_only),
+        cmocka_unit_test(numbers_are_set_as_printf_sets_them),
         cmocka_unit_test(letters_differ_and_keep_to_their_cells),
         cmocka_unit_test(text_is_set_letter_by_letter),
     };

@@ -315,7 +315,7 @@ ax_status ax_dxf_write(const ax_cut_plan* plan, int k, ax_dxf_version version, c
     dxf d = {.plan = plan,
              .modern = version == AX_DXF_R2000,
              .handle = FIRST_HANDLE,
-             .writer = {ax_export_open(path, error)}};
+             .writer = {.out = ax_export_open(path, error)}};
     if (!d.writer.out)
         return AX_FAILED;
     header(&d, sheet, FIRST_HANDLE + count_entities(plan, sheet));

@@ -28,7 +28,7 @@ typedef struct ax_writer {
 void ax_put_words(ax_writer* w, const char* words);
 void ax_put_format(ax_writer* w, const char* format, ...) __attribute__((format(printf, 2, 3)));
 void ax_put_whole(ax_writer* w, long long value);
-// As "%.*f" in the C locale, without "-0"; at most 9 decimals, |value| 10^decimals < 1e18.
+// As "%.*f" in the C locale, but for ties, digits after the 15th and "-0"; at most 9 decimals, |value| 10^decimals < 1e18.
 void ax_put_fixed(ax_writer* w, double value, int decimals);
 // Millimetres to a tenth of a micrometre, without trailing zeros. |mm| < 1e12.
 void ax_put_mm(ax_writer* w, double mm);
