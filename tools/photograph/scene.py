@@ -33,6 +33,7 @@ def arguments():
     parser.add_argument("--lift", type=float, default=0, help="metres of air under the lowest hinge; the frame stands on posts")
     parser.add_argument("--posts", type=int, default=0, help="posts under the frame, at its highest points apart from each other")
     parser.add_argument("--people", type=int, default=0, help="figures of 1.72 m for scale")
+    parser.add_argument("--balloon", action="store_true", help="what blows the shell up: a skin beneath it")
     parser.add_argument("--layers", nargs="*", default=[], help="more documents, drawn in the same place")
     parser.add_argument("--reference", help="OBJ of what stands there, in the design's unit")
     parser.add_argument("--threads", type=int, default=0)
@@ -149,6 +150,7 @@ class Shell:
         self.points = [Vector((*p, 0.0)[:3]) * scale for p in points]
         self.flat = [Vector((*p[:2], 0.0)) * scale for p in design["flat"]]
         self.triangles = design["triangles"]
+        self.holes = design["holes"]
         self.openings = design["openings"]
         self.supports = design["supports"] if state != "flat" else []
         lengths = [(self.flat[t[k]] - self.flat[t[k - 1]]).length for t in self.triangles for k in range(3)]
@@ -256,6 +258,21 @@ def add_pins(shell, kind, material):
     return add_mesh("pins", vertices, faces, material)
 
 
+def add_balloon(shell, depth, material):
+    """A smooth skin just beneath the panels, which bulges a little into the holes."""
+    vertices = list(shell.points)
+    normals = [Vector() for _ in vertices]
+    for triangle in shell.triangles:
+        for i in triangle:
+            normals[i] += shell.normal(triangle)
+    faces = [list(f) for f in shell.triangles + shell.holes + shell.openings]
+    down = [p - n.normalized() * depth for p, n in zip(vertices, normals)]
+    item = add_mesh("balloon", down, faces, material)
+    item.modifiers.new("smooth", "SUBSURF").render_levels = 2
+    for polygon in item.data.polygons:
+        polygon.use_smooth = True
+
+
 def add_tube(points, radius, closed, material, smooth=True):
     curve = bpy.data.curves.new("tube", "CURVE")
     curve.dimensions = "3D"
@@ -279,7 +296,7 @@ def add_tube(points, radius, closed, material, smooth=True):
 
 
 def add_frame(shell, ground, posts, material):
-    radius = max(0.09 * shell.edge, 0.012)
+    radius = 0.1 * shell.edge
     for points, closed in shell.rim():
         if len(points) < 2:
             continue
@@ -449,6 +466,8 @@ def main():
         add_panels(shell, kind, material)
         add_pins(shell, kind, steel)
         add_frame(shell, ground, options.posts, steel)
+        if options.balloon:
+            add_balloon(shell, 0.09 * shell.edge, plain("rubber", (0.42, 0.035, 0.03), 0.3))
     if options.reference:
         bpy.ops.import_scene.obj(filepath=options.reference, axis_forward="Y", axis_up="Z")
         for item in bpy.context.selected_objects:
