@@ -31,7 +31,7 @@ def arguments():
     parser.add_argument("--lens", type=float, default=50, help="focal length in mm on a 36 mm frame")
     parser.add_argument("--sun", default="-125,52", help="azimuth,elevation of the sun in degrees")
     parser.add_argument("--lift", type=float, default=0, help="metres of air under the lowest hinge; the frame stands on posts")
-    parser.add_argument("--posts", type=int, default=0, help="posts under the frame, at its highest points apart from each other")
+    parser.add_argument("--posts", type=int, default=0, help="posts under the frame: one where it is highest, the others far apart")
     parser.add_argument("--people", type=int, default=0, help="figures of 1.72 m for scale")
     parser.add_argument("--balloon", action="store_true", help="what blows the shell up: a skin beneath it")
     parser.add_argument("--layers", nargs="*", default=[], help="more documents, drawn in the same place")
@@ -301,10 +301,9 @@ def add_frame(shell, ground, posts, material):
         if len(points) < 2:
             continue
         add_tube(points, radius, closed, material)
-        chosen = []
-        for point in sorted(points, key=lambda p: -p.z):
-            if len(chosen) < posts and all((point - other).length > 0.55 * len(points) / max(posts, 1) * shell.edge for other in chosen):
-                chosen.append(point)
+        chosen = [max(points, key=lambda p: p.z)][:posts]
+        while len(chosen) < min(posts, len(points)):
+            chosen.append(max(points, key=lambda p: min((p - other).length for other in chosen)))
         for point in chosen:
             add_tube([point, Vector((point.x, point.y, ground))], radius, False, material, smooth=False)
 
