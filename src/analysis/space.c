@@ -93,7 +93,7 @@ ax_status ax_space_measure(const ax_design* d, ax_state state, double ground, do
     double top = -INFINITY;
     for (int h = 0; h < l->hinge_count; ++h)
         top = fmax(top, s.x[h][2]);
-    if (!(s.at_ground.volume > 0))
+    if (!(s.at_ground.volume > 1e-9 * pow(s.surface, 1.5))) // a rim in the ground is off by rounding
         return ax_fail(error, AX_BAD_INPUT,
                        "The shell covers nothing above the ground at height %.4g. Give a lower ground.", s.ground);
     *out = (ax_space){.ground = s.ground,

@@ -35,15 +35,19 @@ void ax_colour_level(double value, double rgb[3])
 
 void ax_palette_range(const ax_palette* palette, double range[2])
 {
-    bool scale = palette->kind == AX_PALETTE_SCALE;
-    range[0] = scale ? 1 : -palette->limit;
-    range[1] = scale ? 2 : palette->limit;
+    bool scale = palette->kind == AX_PALETTE_SCALE, shade = palette->kind == AX_PALETTE_SHADE;
+    range[0] = scale ? 1 : shade ? 0 : -palette->limit;
+    range[1] = scale ? 2 : shade ? 1 : palette->limit;
 }
 
 void ax_palette_colour(const ax_palette* palette, double value, double rgb[3])
 {
     if (palette->kind == AX_PALETTE_SCALE) {
         ax_colour_scale(value, rgb);
+        return;
+    }
+    if (palette->kind == AX_PALETTE_SHADE) {
+        ax_colour_scale(2 - value, rgb);
         return;
     }
     double place = value / palette->limit;
@@ -57,6 +61,8 @@ bool ax_palette_hatched(const ax_palette* palette, double value)
     switch (palette->kind) {
     case AX_PALETTE_SCALE:
         return value < 0.995 || value > 2.005; // as it would be written with two decimals
+    case AX_PALETTE_SHADE:
+        return false;
     case AX_PALETTE_FORCE:
         return fabs(value) > palette->limit;
     case AX_PALETTE_CURVATURE:

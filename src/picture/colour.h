@@ -14,12 +14,13 @@ void ax_colour_level(double value, double rgb[3]);
 typedef enum ax_palette_kind {
     AX_PALETTE_SCALE,     // Tide, 1 to 2
     AX_PALETTE_FORCE,     // Level, -limit to limit
+    AX_PALETTE_SHADE,     // Tide the other way, 0 (light) to 1 (dark)
     AX_PALETTE_CURVATURE, // Level with a step at 0, so that the sign of the weakest curvature is seen too
 } ax_palette_kind;
 
 typedef struct ax_palette {
     ax_palette_kind kind;
-    double limit; // > 0; unused by AX_PALETTE_SCALE
+    double limit; // > 0; unused by AX_PALETTE_SCALE and AX_PALETTE_SHADE
 } ax_palette;
 
 void ax_palette_range(const ax_palette* palette, double range[2]);

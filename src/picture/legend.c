@@ -177,7 +177,8 @@ void ax_legend_draw(cairo_t* cr, const ax_legend* legend, int height, double uni
     cairo_fill(cr);
     cairo_translate(cr, PADDING, 0);
 
-    bool scale = legend->palette.kind == AX_PALETTE_SCALE;
+    bool scale =
+        legend->palette.kind == AX_PALETTE_SCALE || legend->palette.kind == AX_PALETTE_SHADE; // no sign, no zero within
     char text[2][32], both[80];
     int decimals = scale ? 2 : ax_decimals_for(legend->palette.limit) - 1;
     set_font(cr, true, 12);
@@ -246,6 +247,19 @@ void ax_title_draw(cairo_t* cr, const char* title, const char* text, double unit
     set_colour(cr, text2, 1);
     write(cr, text, MARGIN + width + 10, 29, 0);
     cairo_restore(cr);
+}
+
+void ax_label_draw(cairo_t* cr, const char* text, double x, double y, double unit)
+{
+    cairo_text_extents_t extents;
+    set_font(cr, true, 13 * unit);
+    cairo_text_extents(cr, text, &extents);
+    double width = extents.x_advance + 12 * unit, height = 22 * unit;
+    rounded(cr, x - width / 2, y - height / 2, width, height, 6 * unit);
+    set_colour(cr, 0xffffff, 0.92);
+    cairo_fill(cr);
+    set_colour(cr, text1, 1);
+    write(cr, text, x, y + 4.6 * unit, 0.5);
 }
 
 ax_scale_bar ax_scale_bar_make(double unit_pixels, double longest)

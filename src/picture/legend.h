@@ -27,6 +27,9 @@ void ax_legend_draw(cairo_t* cr, const ax_legend* legend, int height, double uni
 
 void ax_title_draw(cairo_t* cr, const char* title, const char* text, double unit);
 
+// A word on a light plate about a point.
+void ax_label_draw(cairo_t* cr, const char* text, double x, double y, double unit);
+
 // A bar of 1, 2 or 5 times a power of ten, at most `longest` pixels long, for a length of `unit_pixels` pixels.
 typedef struct ax_scale_bar {
     double length, pixels; // in the document's unit, in the picture

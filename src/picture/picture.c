@@ -402,3 +402,145 @@ ax_status ax_picture_screen(const ax_mesh* mesh, const ax_screen* screen, ax_scr
     ax_scene_free(&scene);
     return status;
 }
+
+// ---- shade ---------------------------------------------------------------------------------------------------------------------
+
+// From the ground in the first layer's unit to pixels, y up.
+typedef struct map_view {
+    double scale, x, y; // of the ground's lower left corner
+    const ax_ground* ground;
+} map_view;
+
+static void map_point(const map_view* v, double x, double y, double out[2])
+{
+    out[0] = v->x + v->scale * (x - v->ground->lo[0]);
+    out[1] = v->y - v->scale * (y - v->ground->lo[1]);
+}
+
+static void draw_ground(cairo_t* cr, const map_view* v, const double* opacity, ax_legend* legend)
+{
+    const ax_ground* g = v->ground;
+    cairo_surface_t* image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, g->columns, g->rows);
+    if (cairo_surface_status(image) == CAIRO_STATUS_SUCCESS) {
+        uint32_t* pixels = (uint32_t*)(void*)cairo_image_surface_get_data(image);
+        int stride = cairo_image_surface_get_stride(image) / 4;
+        for (int row = 0; row < g->rows; ++row)
+            for (int c = 0; c < g->columns; ++c) {
+                double rgb[3], value = opacity[(size_t)row * (size_t)g->columns + (size_t)c];
+                ax_palette_colour(&legend->palette, value, rgb);
+                ax_legend_count(legend, value, 1);
+                uint32_t pixel = 0;
+                for (int k = 0; k < 3; ++k)
+                    pixel = pixel << 8 | (uint32_t)lrint(255 * rgb[k]);
+                pixels[(g->rows - 1 - row) * stride + c] = pixel;
+            }
+        cairo_surface_mark_dirty(image);
+        cairo_save(cr);
+        cairo_translate(cr, v->x, v->y - v->scale * g->cell * g->rows);
+        cairo_scale(cr, v->scale * g->cell, v->scale * g->cell);
+        cairo_set_source_surface(cr, image, 0, 0);
+        cairo_pattern_set_filter(cairo_get_source(cr), CAIRO_FILTER_GOOD);
+        cairo_rectangle(cr, 0, 0, g->columns, g->rows);
+        cairo_fill(cr);
+        cairo_restore(cr);
+    }
+    cairo_surface_destroy(image);
+}
+
+// The layer's rim as it hangs, seen from above: dark over light, so that it is seen on every colour.
+static void draw_rim(cairo_t* cr, const map_view* v, const ax_layer* first, const ax_layer* l, double unit)
+{
+    double metre = ax_unit_in_metres(l->design->unit) / ax_unit_in_metres(first->design->unit);
+    const double(*x)[3] = l->state == AX_STATE_SIMULATED ? l->design->simulated : l->design->deployed;
+    int* order = AX_NEW(int, l->design->linkage.hinge_count);
+    int count = ax_linkage_rim(&l->design->linkage, order);
+    for (int k = 0; k < count; ++k) {
+        const double *p = x[order[k]], c = metre * cos(l->turn), s = metre * sin(l->turn);
+        double at[2];
+        map_point(v, c * p[0] - s * p[1] + l->move[0], s * p[0] + c * p[1] + l->move[1], at);
+        cairo_line_to(cr, at[0], at[1]);
+    }
+    ax_free(order);
+    cairo_close_path(cr);
+    cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_line_width(cr, 3 * unit);
+    cairo_set_source_rgba(cr, 1, 1, 1, 0.7);
+    cairo_stroke_preserve(cr);
+    cairo_set_line_width(cr, 1.2 * unit);
+    cairo_set_source_rgb(cr, 0.08, 0.09, 0.12);
+    cairo_stroke(cr);
+}
+
+static void draw_disc(cairo_t* cr, const map_view* v, const ax_shade_wish* w, double mean, double unit)
+{
+    double at[2];
+    char number[32], text[48];
+    map_point(v, w->at[0], w->at[1], at);
+    ax_write_number(number, sizeof number, mean, 2);
+    snprintf(text, sizeof text, "%s", number);
+    cairo_new_path(cr);
+    cairo_arc(cr, at[0], at[1], v->scale * w->radius, 0, 2 * AX_PI);
+    cairo_set_line_width(cr, 2 * unit);
+    cairo_set_source_rgb(cr, 1, 1, 1);
+    cairo_stroke(cr);
+    ax_label_draw(cr, text, at[0], at[1], unit);
+}
+
+// An arrow to the north in the upper right corner.
+static void draw_north(cairo_t* cr, const sheet* s, double north)
+{
+    double x = s->width - 44 * s->unit, y = 62 * s->unit, size = 18 * s->unit;
+    double to[2] = {-sin(north), -cos(north)}; // y of the picture goes down
+    cairo_new_path(cr);
+    cairo_move_to(cr, x + size * to[0], y + size * to[1]);
+    cairo_line_to(cr, x - size * to[0] + 0.5 * size * to[1], y - size * to[1] - 0.5 * size * to[0]);
+    cairo_line_to(cr, x - 0.55 * size * to[0], y - 0.55 * size * to[1]);
+    cairo_line_to(cr, x - size * to[0] - 0.5 * size * to[1], y - size * to[1] + 0.5 * size * to[0]);
+    cairo_close_path(cr);
+    cairo_set_source_rgb(cr, 0.08, 0.09, 0.12);
+    cairo_fill(cr);
+    ax_label_draw(cr, "N", x + 1.7 * size * to[0], y + 1.7 * size * to[1], s->unit);
+}
+
+ax_status ax_picture_shade(const ax_shade_picture* p, int width, int height, const char* path, ax_error* error)
+{
+    sheet s;
+    ax_status status = make_sheet(width, height, &s, error);
+    if (status != AX_OK)
+        return status;
+    const ax_ground* g = p->ground;
+    ax_legend legend = ax_legend_make("Opacity", &(ax_palette){.kind = AX_PALETTE_SHADE, .limit = 1});
+    legend.words[0] = "Sun", legend.words[1] = "Shade";
+    ax_rectangle card = ax_legend_card(&legend, s.height, s.unit);
+    double left = s.legend ? card.x + card.width + 24 * s.unit : 0.05 * width,
+           top = s.title ? 56 * s.unit : 0.05 * height;
+    double right = width - 88 * s.unit, bottom = height - 40 * s.unit;
+    double across = g->cell * g->columns, down = g->cell * g->rows;
+    map_view v = {.scale = fmin((right - left) / across, (bottom - top) / down), .ground = g};
+    v.x = 0.5 * (left + right - v.scale * across), v.y = 0.5 * (top + bottom + v.scale * down);
+    cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    cairo_t* cr = cairo_create(surface);
+    cairo_set_source_rgb(cr, 0.955, 0.96, 0.968);
+    cairo_paint(cr);
+    draw_ground(cr, &v, p->opacity, &legend);
+    cairo_save(cr);
+    cairo_rectangle(cr, v.x, v.y - v.scale * down, v.scale * across, v.scale * down);
+    cairo_clip(cr);
+    for (int k = 0; k < p->layer_count; ++k)
+        draw_rim(cr, &v, p->layers, &p->layers[k], s.unit);
+    for (int k = 0; k < p->wish_count; ++k)
+        draw_disc(cr, &v, &p->wishes[k], ax_shade_mean(g, p->opacity, &p->wishes[k]), s.unit);
+    cairo_restore(cr);
+    if (s.legend) {
+        ax_scale_bar bar = ax_scale_bar_make(v.scale, 120 * s.unit);
+        ax_legend_draw(cr, &legend, s.height, s.unit);
+        ax_scale_bar_draw(cr, &bar, ax_unit_name(p->layers[0].design->unit), s.width, s.height, s.unit);
+        draw_north(cr, &s, p->north);
+    }
+    if (s.title)
+        ax_title_draw(cr, "Shade on the ground", p->text ? p->text : "", s.unit);
+    cairo_destroy(cr);
+    status = save(surface, path, error);
+    cairo_surface_destroy(surface);
+    return status;
+}
