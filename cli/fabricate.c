@@ -8,6 +8,7 @@ void fabricate_defaults(fabricate_arguments* arguments)
     ax_fabricate_options usual = ax_fabricate_options_default();
     arguments->margin = usual.margin;
     arguments->spacing = usual.spacing;
+    arguments->frames = usual.frames;
 }
 
 ax_status fabricate_choose(const fabricate_arguments* a, ax_fabricate_options* options, ax_profile* profile,
@@ -15,6 +16,7 @@ ax_status fabricate_choose(const fabricate_arguments* a, ax_fabricate_options* o
 {
     *options = ax_fabricate_options_default();
     options->kerf = a->kerf, options->margin = a->margin, options->spacing = a->spacing;
+    options->frames = a->frames;
     options->profile = profile;
     ax_status status = ax_profile_find(a->profile ? a->profile : "generic", profile, error);
     if (status == AX_OK && a->joint)
@@ -52,24 +54,30 @@ static void print_forces(const ax_cut_plan* p, FILE* out)
 static void print_clearance(const ax_cut_plan* p, FILE* out)
 {
     static const char* const frames[] = {"flat", "deployed", "simulated"};
+    char states[64] = "";
+    if (p->frames_checked)
+        snprintf(states, sizeof states, " flat, open and in %d states between", p->frames_checked);
     double least = INFINITY;
     for (int i = 0; i < p->hinge_count; ++i)
         if (!isnan(p->hinges[i].clearance))
             least = fmin(least, p->hinges[i].clearance);
     if (p->clashes_found == 0) {
-        fputs("  Clearance       no panels collide", out);
+        fprintf(out, "  Clearance       no panels collide%s", states);
         if (isfinite(least))
             fprintf(out, "; %.3g mm or more between neighbours from flat to open", least);
         putc('\n', out);
         return;
     }
-    fprintf(out, "  Clearance       %d pairs of panels collide:\n", p->clashes_found);
+    fprintf(out, "  Clearance       %d pairs of panels collide%s%s:\n", p->clashes_found, *states ? ", tried" : "",
+            states);
     for (int i = 0; i < p->clash_count && i < 5; ++i) {
         const ax_cut_clash* c = &p->clashes[i];
         fprintf(out, "                  %s and %s by %.3g mm, ", p->panels[c->panels[0]].name,
                 p->panels[c->panels[1]].name, c->overlap);
         if (c->frame < 0)
             fprintf(out, "turning about hinge %d\n", c->hinge);
+        else if (c->frame == 3)
+            fprintf(out, "between flat and open, %.0f %% of the way\n", 100 * c->opening);
         else
             fprintf(out, "in the %s state\n", frames[c->frame]);
     }

@@ -8,6 +8,7 @@
 typedef struct fabricate_arguments {
     const char *joint, *material, *sheet, *profile;
     double kerf, margin, spacing;
+    int frames;
 } fabricate_arguments;
 
 // Rows for a table of options; `arguments` is the struct, `member` its fabricate_arguments.
@@ -50,6 +51,12 @@ typedef struct fabricate_arguments {
          .hi = 1000,                                                                                                   \
          .unit = "mm",                                                                                                 \
          .offset = offsetof(arguments, member.margin)},                                                                \
+        {.name = "--frames",                                                                                           \
+         .value = "N",                                                                                                 \
+         .text = "states between flat and open in which panels are held against each other",                           \
+         .kind = OPTION_INTEGER,                                                                                       \
+         .hi = 1000,                                                                                                   \
+         .offset = offsetof(arguments, member.frames)},                                                                \
     {                                                                                                                  \
         .name = "--spacing", .value = "MM", .text = "least distance of pieces that are packed on a sheet",             \
         .kind = OPTION_NUMBER, .hi = 1000, .unit = "mm", .offset = offsetof(arguments, member.spacing)                 \

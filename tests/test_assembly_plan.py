@@ -143,6 +143,21 @@ class AssemblyPlan(CommandCase):
         self.refuse(2, "coupon", "coupon", "kerf", "-o", self.folder / "kerf.plan.pdf")
         self.refuse(2, "flat", "export", self.document, "-o", self.folder / "x.frame.dxf", "--state", "flat")
 
+    def test_panels_that_collide_are_listed_and_red(self):
+        thick = ("--joint", "none:inset=3", "--material", "plywood-3:thickness=60")
+        path = self.export("dome.plan.pdf", *thick)
+        found = json.loads(self.succeed("fabricate", self.document, "--json", *thick))
+        self.assertGreater(found["clashes_found"], 0)
+        page = self.page(read_pages(path), "Collisions")
+        for clash in found["clashes"]:
+            row = rf"\b{clash['a']} +{clash['b']} .*{100 * clash['opening']:.0f} % of the way to open +{clash['overlap']:.2f}"
+            self.assertTrue(clash["frame"] < 3 or re.search(row, page), row)
+        colliding = {c[side] for c in found["clashes"] for side in "ab"}
+        subprocess.run(["pdftocairo", "-svg", "-f", "2", "-l", "2", path, self.folder / "layout.svg"], check=True)
+        red = re.findall(r"fill:rgb\((9\d|8\d)[\d.]*%,(5\d|4\d)[\d.]*%", (self.folder / "layout.svg").read_text())
+        self.assertEqual(len(red), len(colliding))
+        self.assertNotIn("Collisions", "".join(read_pages(self.export("thin.plan.pdf", *thick[:2]))))
+
 
 if __name__ == "__main__":
     support.tap.main()

@@ -4,6 +4,7 @@
 
 #include "base/vec.h"
 #include "fabricate/profile.h"
+#include "fabricate/way.h"
 #include "support/sample.h"
 #include "support/test.h"
 
@@ -541,10 +542,10 @@ static void what_collides_is_named(void** state)
     assert_true(plan.clashes_found > 0 && plan.clash_count <= AX_CLASHES);
     for (int i = 0; i < plan.clash_count; ++i) {
         const ax_cut_clash* c = &plan.clashes[i];
-        assert_int_equal(plan.panels[c->panels[0]].layer, plan.panels[c->panels[1]].layer);
         assert_true(c->overlap > 0);
         if (c->frame != 0)
             continue;
+        assert_int_equal(plan.panels[c->panels[0]].layer, plan.panels[c->panels[1]].layer);
         segments a = {0}, b = {0};
         add_path(&a, &plan, plan.panels[c->panels[0]].first, 0);
         add_path(&b, &plan, plan.panels[c->panels[1]].first, 0);
@@ -567,6 +568,145 @@ static void what_collides_is_named(void** state)
     ax_cut_plan_free(&plan);
     thick = choose("none:inset=3", "plywood-3", NULL, 0);
     plan = make(&sample, &thick);
+    assert_int_equal(plan.clashes_found, 0);
+    ax_cut_plan_free(&plan);
+}
+
+// --- between flat and open
+
+static double largest_edge_error(const double (*places)[3])
+{
+    double most = 0;
+    for (int t = 0; t < sample.linkage.triangle_count; ++t)
+        for (int k = 0; k < 3; ++k) {
+            int i = sample.linkage.triangles[t][k], j = sample.linkage.triangles[t][(k + 1) % 3];
+            double length = ax_distance2(sample.flat[i], sample.flat[j]);
+            most = fmax(most, fabs(ax_distance3(places[i], places[j]) / length - 1));
+        }
+    return most;
+}
+
+static double extent(const double (*places)[3])
+{
+    double sum = 0, middle[3] = {0};
+    int n = sample.linkage.hinge_count;
+    for (int h = 0; h < n; ++h)
+        for (int c = 0; c < 3; ++c)
+            middle[c] += places[h][c] / n;
+    for (int h = 0; h < n; ++h)
+        sum += ax_dot3(places[h], places[h]) - ax_dot3(middle, middle);
+    return sqrt(sum / n);
+}
+
+static void a_linkage_stays_rigid_on_its_way_and_opens(void** state)
+{
+    (void)state;
+    size_t n = (size_t)sample.linkage.hinge_count;
+    double(*one)[3] = calloc(n, sizeof *one), (*two)[3] = calloc(n, sizeof *two), before = 0, error;
+    for (size_t h = 0; h < n; ++h)
+        memcpy(one[h], sample.flat[h], sizeof *sample.flat);
+    before = extent((const double(*)[3])one);
+    ax_pool *alone = ax_pool_make(1), *pair = ax_pool_make(2);
+    ax_way *first = ax_way_make(&sample, alone), *second = ax_way_make(&sample, pair);
+    double start = before, middle = 0;
+    for (int k = 1; k < 10; ++k) {
+        assert_true(ax_way_at(first, k / 10.0, NULL, one, &error));
+        assert_near(error, largest_edge_error((const double(*)[3])one), 1e-12);
+        assert_at_most(error, 1e-3);
+        assert_true(ax_way_at(second, k / 10.0, NULL, two, &error));
+        assert_memory_equal(one, two, n * sizeof *one); // the same bits by any number of threads
+        double now = extent((const double(*)[3])one);
+        assert_true(now > before);
+        before = now;
+        middle = k == 5 ? now : middle;
+    }
+    double end = extent((const double(*)[3])sample.simulated);
+    assert_true(before < end);
+    assert_near((middle - start) / (end - start), 0.5, 0.1);
+    ax_way_free(first);
+    ax_way_free(second);
+    ax_pool_free(alone);
+    ax_pool_free(pair);
+    free(one);
+    free(two);
+}
+
+// Whether a point of panel `a`, `inset` mm within its edges and anywhere in its thickness, lies as deep within panel `b`; mm.
+static bool points_meet(const double (*places)[3], int a, int b, double inset, double thickness)
+{
+    enum { GRID = 240 };
+    const int *p = sample.linkage.triangles[a], *q = sample.linkage.triangles[b];
+    double n[2][3], e[2][3];
+    for (int side = 0; side < 2; ++side) {
+        const int* t = side ? q : p;
+        ax_sub3(places[t[1]], places[t[0]], e[0]);
+        ax_sub3(places[t[2]], places[t[0]], e[1]);
+        ax_cross(e[0], e[1], n[side]);
+        double length = ax_norm3(n[side]);
+        for (int c = 0; c < 3; ++c)
+            n[side][c] /= length;
+    }
+    for (int i = 0; i <= GRID; ++i)
+        for (int j = 0; j <= GRID - i; ++j)
+            for (int up = -12; up <= 12; ++up) {
+                double x[3];
+                for (int c = 0; c < 3; ++c)
+                    x[c] =
+                        1000 * (i * places[p[0]][c] + j * places[p[1]][c] + (GRID - i - j) * places[p[2]][c]) / GRID +
+                        up * thickness / 24 * n[0][c];
+                bool inside[2] = {true, true};
+                for (int side = 0; side < 2; ++side) {
+                    const int* t = side ? q : p;
+                    for (int k = 0; k < 3; ++k) {
+                        double edge[3], from[3], in[3], corner[3];
+                        ax_sub3(places[t[(k + 1) % 3]], places[t[k]], edge);
+                        ax_cross(n[side], edge, in);
+                        for (int c = 0; c < 3; ++c)
+                            corner[c] = 1000 * places[t[k]][c];
+                        ax_sub3(x, corner, from);
+                        inside[side] = inside[side] && ax_dot3(from, in) / ax_norm3(in) > inset;
+                        inside[side] = inside[side] && (side == 0 || fabs(ax_dot3(from, n[1])) < thickness / 2);
+                    }
+                }
+                if (inside[0] && inside[1])
+                    return true;
+            }
+    return false;
+}
+
+static void thick_panels_that_collide_on_the_way_are_named(void** state)
+{
+    (void)state;
+    ax_fabricate_options o = choose("none:inset=3", "plywood-3:thickness=40", NULL, 0);
+    ax_cut_plan plan = make(&sample, &o);
+    assert_int_equal(plan.frames_checked, 7);
+    assert_true(plan.clashes_found > 0 && plan.frame_error > 0 && plan.frame_error < 0.5);
+    size_t n = (size_t)sample.linkage.hinge_count;
+    double(*places)[3] = calloc(n, sizeof *places), error;
+    int tried = 0, met = 0;
+    ax_way* way = ax_way_make(&sample, NULL);
+    for (int k = 1; k <= 7; ++k) {
+        ax_way_at(way, k / 8.0, NULL, places, &error);
+        for (int i = 0; i < plan.clash_count; ++i) {
+            const ax_cut_clash* c = &plan.clashes[i];
+            assert_int_equal(c->frame, 3); // open, they are apart: nothing but the way tells
+            for (int j = 0; j < i; ++j)
+                assert_memory_not_equal(plan.clashes[j].panels, c->panels, sizeof c->panels);
+            if (c->opening != k / 8.0 || c->overlap < 2)
+                continue;
+            ++tried;
+            met += points_meet((const double(*)[3])places, c->panels[0], c->panels[1], 3, 40) ||
+                   points_meet((const double(*)[3])places, c->panels[1], c->panels[0], 3, 40);
+        }
+    }
+    assert_true(tried > 0);
+    assert_int_equal(met, tried);
+    ax_way_free(way);
+    free(places);
+    ax_cut_plan_free(&plan);
+    o.frames = 0;
+    plan = make(&sample, &o);
+    assert_int_equal(plan.frames_checked, 0);
     assert_int_equal(plan.clashes_found, 0);
     ax_cut_plan_free(&plan);
 }
@@ -807,6 +947,8 @@ int main(void)
         cmocka_unit_test(pieces_fit_their_sheets_and_hold_together),
         cmocka_unit_test(clearance_is_what_turning_the_panels_finds),
         cmocka_unit_test(what_collides_is_named),
+        cmocka_unit_test(a_linkage_stays_rigid_on_its_way_and_opens),
+        cmocka_unit_test(thick_panels_that_collide_on_the_way_are_named),
         cmocka_unit_test(hinge_forces_stand_beside_what_the_joint_bears),
         cmocka_unit_test(what_does_not_fit_is_refused_by_name),
         cmocka_unit_test(words_choose_or_are_refused),

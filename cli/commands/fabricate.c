@@ -47,10 +47,10 @@ static json_t* clashes_json(const ax_cut_plan* p)
     json_t* all = json_array();
     for (int i = 0; i < p->clash_count; ++i) {
         const ax_cut_clash* c = &p->clashes[i];
-        json_array_append_new(all, json_pack("{s:s, s:s, s:i, s:o, s:i, s:o}", "a", p->panels[c->panels[0]].name, "b",
-                                             p->panels[c->panels[1]].name, "hinge", c->hinge, "mouth_deg",
-                                             json_number(c->angle * 180 / M_PI), "frame", c->frame, "overlap",
-                                             json_number(c->overlap)));
+        json_array_append_new(all, json_pack("{s:s, s:s, s:i, s:o, s:i, s:o, s:o}", "a", p->panels[c->panels[0]].name,
+                                             "b", p->panels[c->panels[1]].name, "hinge", c->hinge, "mouth_deg",
+                                             json_number(c->angle * 180 / M_PI), "frame", c->frame, "opening",
+                                             json_number(c->opening), "overlap", json_number(c->overlap)));
     }
     return all;
 }
@@ -68,14 +68,15 @@ static json_t* plan_json(const ax_cut_plan* p)
         json_array_append_new(parts, json_pack("{s:s, s:i}", "name", p->parts[k].name, "count", p->parts[k].count));
     for (int k = 0; k < AX_NOTE; ++k)
         json_object_set_new(lengths, ax_operation_name((ax_operation)k), json_number(p->cut_length[k]));
-    return json_pack(
-        "{s:o, s:s, s:f, s:f, s:s, s:o, s:f, s:i, s:f, s:f, s:f, s:o, s:f, s:f, s:b, s:i, s:i, s:i, s:o, s:o}", "joint",
-        joint, "material", p->material.name, "thickness", p->material.thickness, "kerf", p->kerf, "profile",
-        p->profile->name, "sheets", sheets, "utilisation", p->utilisation, "panels", p->panel_count, "area_mm2",
-        p->area, "mass_kg", p->mass, "travel_mm", p->travel, "cut_mm", lengths, "seconds", p->seconds, "label_height",
-        p->panel_count ? p->panels[0].label_height : 0, "in_place", p->in_place, "labels_dropped", p->labels_dropped,
-        "seams", p->seam_count, "clashes_found", p->clashes_found, "clashes", clashes_json(p), "hinges",
-        hinges_json(p));
+    return json_pack("{s:o, s:s, s:f, s:f, s:s, s:o, s:f, s:i, s:f, s:f, s:f, s:o, s:f, s:f, s:b, s:i, s:i, s:i, s:i, "
+                     "s:f, s:o, s:o}",
+                     "joint", joint, "material", p->material.name, "thickness", p->material.thickness, "kerf", p->kerf,
+                     "profile", p->profile->name, "sheets", sheets, "utilisation", p->utilisation, "panels",
+                     p->panel_count, "area_mm2", p->area, "mass_kg", p->mass, "travel_mm", p->travel, "cut_mm", lengths,
+                     "seconds", p->seconds, "label_height", p->panel_count ? p->panels[0].label_height : 0, "in_place",
+                     p->in_place, "labels_dropped", p->labels_dropped, "seams", p->seam_count, "clashes_found",
+                     p->clashes_found, "frames_checked", p->frames_checked, "frame_error", p->frame_error, "clashes",
+                     clashes_json(p), "hinges", hinges_json(p));
 }
 
 static ax_status run(const void* given, ax_error* error)

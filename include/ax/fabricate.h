@@ -129,9 +129,10 @@ typedef struct ax_cut_hinge {
 // Two panels that come too close.
 typedef struct ax_cut_clash {
     int panels[2];
-    int hinge;      // where they meet, -1: they do not
-    double angle;   // radians, mouth angle at the hinge; NaN for panels that do not meet
-    int frame;      // 0 flat, 1 deployed, 2 simulated; -1: on the way from flat to open at a hinge
+    int hinge;    // where they meet, -1: they do not
+    double angle; // radians, mouth angle at the hinge; NaN for panels that do not meet
+    int frame;    // 0 flat, 1 deployed, 2 simulated, 3 between flat and open; -1: turning from flat to open at a hinge
+    double opening; // frame 3: 0 flat, 1 open, where they overlap most; NaN elsewhere
     double overlap; // mm
 } ax_cut_clash;
 
@@ -154,6 +155,8 @@ typedef struct ax_cut_plan {
     ax_cut_clash* clashes; // at most AX_CLASHES of them are kept; clash_count counts these
     ax_cut_part* parts;
     int clashes_found;
+    int frames_checked; // states between flat and open in which panels were held against each other
+    double frame_error; // mm, by which hinges of these are off at most; what overlaps by less does not count
     const ax_joint_type* joint;
     double joint_values[8]; // as used, by the joint's parameters
     ax_material material;
@@ -199,12 +202,14 @@ typedef struct ax_fabricate_options {
     double spacing;            // mm, least distance of neighbours that are packed; at least the kerf is kept
     double kerf;               // mm, full width of the beam: outlines grow by half of it, holes shrink. 0: none
     bool clearance;            // prove clearance (takes longer than the rest)
+    int frames;                  // with it: states between flat and open to prove it in, 0 to 1000
     int sizes;                 // of panels that the schedule proposes, at most; 0: see ax_cluster_within
     const char* title;         // for notes, NULL: none
     // of the recipe, as it shall be printed, NULL: none. Never the day of export: the same design gives the same bytes
     const char* date;
 } ax_fabricate_options;
-ax_fabricate_options ax_fabricate_options_default(void); // bare triangles, card, one sheet, kerf 0, clearance proven
+ax_fabricate_options ax_fabricate_options_default(
+    void); // bare triangles, card, one sheet, kerf 0, clearance proven, also in 7 states between
 
 // Reads "ring", or "ring:hole=4,edge=3" with parameters; "plywood-3", or "plywood-3:thickness=2.9" with density (kg/m3), feature (mm)
 // and strength (MPa) likewise; "600x400", or a preset's name. AX_USAGE says what is known and what the range is.

@@ -19,6 +19,9 @@ void ax_booklet_open(ax_booklet* b, const ax_design* design, const ax_cut_plan* 
     *b = (ax_booklet){.design = design, .plan = plan, .mm = 1000 * ax_unit_in_metres(design->unit)};
     b->assembly = ax_assembly_make(design, plan);
     b->frame = ax_frame_of(design);
+    b->collides = AX_NEW0(unsigned char, plan->panel_count);
+    for (int i = 0; i < plan->clash_count; ++i)
+        b->collides[plan->clashes[i].panels[0]] = b->collides[plan->clashes[i].panels[1]] = 1;
     b->surface = cairo_pdf_surface_create(path, point * width, point * height);
     if (strlen(plan->date) == 10)
         snprintf(date, sizeof date, "%.10sT00:00:00Z", plan->date);
@@ -37,6 +40,7 @@ ax_status ax_booklet_close(ax_booklet* b, const char* path, ax_error* error)
     cairo_surface_destroy(b->surface);
     ax_assembly_free(&b->assembly);
     ax_frame_free(&b->frame);
+    ax_free(b->collides);
     return status == CAIRO_STATUS_SUCCESS
                ? AX_OK
                : ax_fail(error, AX_FAILED, "%s could not be written: %s.", path, cairo_status_to_string(status));
@@ -167,7 +171,10 @@ void ax_booklet_panel(ax_booklet* b, int panel, const double corners[3][2], ax_p
                                       {0.93, 0.84, 0.93}, {0.98, 0.96, 0.72}, {0.86, 0.86, 0.86}};
     enum { TINTS = sizeof tints / sizeof *tints };
     const ax_cut_panel* p = &b->plan->panels[panel];
-    const double* tint = tints[b->assembly.by_pieces ? b->assembly.step_of[panel] % TINTS : ((p->row % 3) + 3) % 3];
+    static const double red[] = {0.98, 0.55, 0.5};
+    const double* tint =
+        b->collides[panel] ? red
+                           : tints[b->assembly.by_pieces ? b->assembly.step_of[panel] % TINTS : ((p->row % 3) + 3) % 3];
     bool faded = style == AX_PANEL_THERE || style == AX_PANEL_BACK;
     double shade = p->layer ? 0.86 : 1, pale = faded ? 0.6 : 0;
     cairo_t* c = b->cairo;
@@ -378,7 +385,7 @@ void ax_booklet_title(ax_booklet* b)
     say_frame(&l);
     say(&l, "Steps", b->assembly.by_pieces ? "%d, by pieces" : "%d, by rows", b->assembly.step_count);
     if (p->clashes_found)
-        say(&l, "Attention", "%d pairs of panels collide; see the report of the export", p->clashes_found);
+        say(&l, "Attention", "%d pairs of panels collide: red, listed on the last pages", p->clashes_found);
     if (d->load.kind == AX_LOAD_GRAVITY && d->load.direction[2] > 0) {
         l.y += 4;
         ax_booklet_text(b, l.x, l.y, 3.2, AX_LEFT,

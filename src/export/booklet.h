@@ -13,7 +13,8 @@ typedef struct ax_booklet {
     const ax_cut_plan* plan;
     ax_assembly assembly;
     ax_support_frame frame;
-    double mm; // of the design's unit
+    unsigned char* collides; // per panel
+    double mm;               // of the design's unit
     int page;
 } ax_booklet;
 
@@ -52,7 +53,8 @@ typedef struct ax_table {
 } ax_table;
 void ax_table_row(ax_table* table, const char* const* cells);
 
-// A panel, drawn: tinted by its row or its step's piece (the upper of two layers darker), its name inside if it is legible there. `corners` on paper.
+// A panel, drawn: tinted by its row or its step's piece (the upper of two layers darker), red if it collides with another, its name
+// inside if it is legible there. `corners` on paper.
 typedef enum ax_panel_style {
     AX_PANEL_NAMED,
     AX_PANEL_ALWAYS_NAMED, // in letters of the least size if need be
@@ -80,6 +82,7 @@ void ax_booklet_layout(ax_booklet* b);
 void ax_booklet_order(ax_booklet* b);
 void ax_booklet_frame(ax_booklet* b);
 void ax_booklet_views(ax_booklet* b);
+void ax_booklet_collisions(ax_booklet* b); // none if nothing collides
 // The axonometric view alone; `names`: with panels' names.
 typedef enum ax_booklet_view { AX_VIEW_PLAN, AX_VIEW_FRONT, AX_VIEW_SIDE, AX_VIEW_AXONOMETRIC } ax_booklet_view;
 void ax_booklet_draw_view(ax_booklet* b, ax_booklet_view view, const ax_box* box, bool names, char scale[32]);

@@ -1,10 +1,11 @@
 // Whether panels can move from flat to open without touching: at every hinge over the way from its flat mouth to the open one, by
-// closed form, and between all panels in the states that are known. The states between flat and deployed are not computed.
+// closed form, and between all panels in the states that are known and in some between them.
 #include "fabricate/work.h"
 
 #include "analysis/measure.h"
 #include "base/pool.h"
 #include "base/vec.h"
+#include "fabricate/way.h"
 #include "linkage/lattice.h"
 
 #include <stdlib.h>
@@ -347,6 +348,7 @@ static void name_hinge_clashes(ax_work* w)
                                                .hinge = h->hinge,
                                                .angle = h->mouth,
                                                .frame = -1,
+                                               .opening = NAN,
                                                .overlap = -h->clearance});
     }
 }
@@ -507,22 +509,115 @@ static void collide_pair(void* context, int i)
     c->overlap[i] = prism_overlap(&p, &q);
 }
 
-static void check_state(ax_work* w, ax_pool* pool, int frame, const double (*state)[3])
+// Calls `found` for pairs that overlap by more than `allowed` mm in a state.
+static void check_state(ax_work* w, ax_pool* pool, const double (*state)[3], double allowed,
+                        void (*found)(void* context, const int pair[2], double overlap), void* context)
 {
     double(*places)[3] = state_in_mm(w, state);
     pairs near = near_in_state(w, (const double(*)[3])places, 0);
     colliding c = {w, (const double(*)[3])places, &near, AX_NEW(double, near.count + 1)};
     ax_pool_run(pool, collide_pair, &c, near.count);
     for (int i = 0; i < near.count; ++i)
-        if (c.overlap[i] > touching)
-            add_clash(w->plan, &(ax_cut_clash){.panels = {near.list[i][0], near.list[i][1]},
-                                               .hinge = -1,
-                                               .angle = NAN,
-                                               .frame = frame,
-                                               .overlap = c.overlap[i]});
+        if (c.overlap[i] > allowed)
+            found(context, near.list[i], c.overlap[i]);
     ax_free(c.overlap);
     ax_free(near.list);
     ax_free(places);
+}
+
+typedef struct naming {
+    ax_cut_plan* plan;
+    int frame;
+} naming;
+
+static void name_clash(void* context, const int pair[2], double overlap)
+{
+    const naming* n = context;
+    add_clash(n->plan, &(ax_cut_clash){.panels = {pair[0], pair[1]},
+                                       .hinge = -1,
+                                       .angle = NAN,
+                                       .frame = n->frame,
+                                       .opening = NAN,
+                                       .overlap = overlap});
+}
+
+// --- the way from flat to open
+
+typedef struct meeting {
+    int panels[2];
+    double opening, overlap;
+} meeting;
+
+typedef struct meetings {
+    int count, room;
+    meeting* list;
+    double opening; // of the state at hand
+} meetings;
+
+static void keep_meeting(void* context, const int pair[2], double overlap)
+{
+    meetings* m = context;
+    if (m->count == m->room) {
+        m->room = 2 * m->room + 64;
+        m->list = ax_realloc(m->list, (size_t)m->room, sizeof *m->list);
+    }
+    m->list[m->count++] = (meeting){{pair[0], pair[1]}, m->opening, overlap};
+}
+
+static int by_pair_then_depth(const void* a, const void* b)
+{
+    const meeting *x = a, *y = b;
+    for (int side = 0; side < 2; ++side)
+        if (x->panels[side] != y->panels[side])
+            return x->panels[side] - y->panels[side];
+    return (x->overlap < y->overlap) - (x->overlap > y->overlap);
+}
+
+// Every pair once, where it overlaps most.
+static void name_meetings(ax_cut_plan* plan, meetings* m)
+{
+    qsort(m->list, (size_t)m->count, sizeof *m->list, by_pair_then_depth);
+    for (int i = 0; i < m->count; ++i) {
+        const meeting *at = &m->list[i], *before = at - (i > 0);
+        if (i == 0 || memcmp(at->panels, before->panels, sizeof at->panels) != 0)
+            add_clash(plan, &(ax_cut_clash){.panels = {at->panels[0], at->panels[1]},
+                                            .hinge = -1,
+                                            .angle = NAN,
+                                            .frame = 3,
+                                            .opening = at->opening,
+                                            .overlap = at->overlap});
+    }
+}
+
+// False if cancelled. States whose panels do not stay rigid prove nothing and are not counted.
+static bool check_way(ax_work* w, ax_pool* pool, const ax_progress* progress)
+{
+    static const double most_error = 1e-3;
+    int count = w->options->frames;
+    double(*places)[3] = ax_alloc((size_t)w->linkage->hinge_count, sizeof *places);
+    double edge = 1000 * ax_unit_in_metres(w->design->unit) * w->design->report.edge_max;
+    ax_way* way = ax_way_make(w->design, pool);
+    meetings met = {0};
+    bool go_on = true;
+    for (int k = 1; k <= count && go_on; ++k) {
+        ax_progress_part slot;
+        double error;
+        met.opening = (double)k / (count + 1);
+        go_on =
+            ax_progress_report(progress, "Proving clearance on the way", (double)(k - 1) / count, NAN) &&
+            ax_way_at(way, met.opening, ax_progress_within(&slot, progress, (double)(k - 1) / count, (double)k / count),
+                      places, &error);
+        if (!go_on || error > most_error)
+            continue;
+        ++w->plan->frames_checked;
+        w->plan->frame_error = fmax(w->plan->frame_error, error * edge);
+        check_state(w, pool, (const double(*)[3])places, touching + error * edge, keep_meeting, &met);
+    }
+    name_meetings(w->plan, &met);
+    ax_free(met.list);
+    ax_way_free(way);
+    ax_free(places);
+    return go_on;
 }
 
 // In the flat state panels of one layer that share no hinge.
@@ -537,8 +632,10 @@ static void check_flat(ax_work* w)
         region p = region_of(w, a), q = region_of(w, b);
         double distance = rest_distance(&p, &q);
         if (distance < -touching)
-            add_clash(w->plan,
-                      &(ax_cut_clash){.panels = {a, b}, .hinge = -1, .angle = NAN, .frame = 0, .overlap = -distance});
+            add_clash(
+                w->plan,
+                &(ax_cut_clash){
+                    .panels = {a, b}, .hinge = -1, .angle = NAN, .frame = 0, .opening = NAN, .overlap = -distance});
     }
     ax_free(near.list);
     ax_free(places);
@@ -562,12 +659,13 @@ ax_status ax_prove_clearance(ax_work* w, const ax_progress* progress, ax_error* 
         }
         if (go_on)
             check_flat(w);
-        go_on = go_on && ax_progress_report(progress, "Proving clearance of the deployed panels", 0.6, NAN);
+        go_on = go_on && ax_progress_report(progress, "Proving clearance of the open panels", 0.6, NAN);
         if (go_on)
-            check_state(w, pool, 1, (const double(*)[3])d->deployed);
-        go_on = go_on && ax_progress_report(progress, "Proving clearance of the simulated panels", 0.8, NAN);
+            check_state(w, pool, (const double(*)[3])d->deployed, touching, name_clash, &(naming){w->plan, 1});
         if (go_on && d->simulated)
-            check_state(w, pool, 2, (const double(*)[3])d->simulated);
+            check_state(w, pool, (const double(*)[3])d->simulated, touching, name_clash, &(naming){w->plan, 2});
+        ax_progress_part slot;
+        go_on = go_on && check_way(w, pool, ax_progress_within(&slot, progress, 0.65, 1));
         ax_pool_free(pool);
     }
     ax_free(mouth);

@@ -28,6 +28,7 @@ ax_fabricate_options ax_fabricate_options_default(void)
         .margin = 10,
         .spacing = 2,
         .clearance = true,
+        .frames = 7,
     };
     for (int k = 0; k < 8; ++k)
         o.joint_values[k] = NAN;

@@ -16,6 +16,7 @@ static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, i
     ax_booklet_order(&b);
     ax_booklet_frame(&b);
     ax_booklet_views(&b);
+    ax_booklet_collisions(&b);
     return ax_booklet_close(&b, path, error);
 }
 
