@@ -280,8 +280,10 @@ static double solve_by_panels(const grid* g, const double (*place)[3], ax_pool* 
     for (int v = 0; v < g->points; ++v)
         for (int c = 0; c < 4; ++c)
             x[v][c] = ax_random_uniform(&random, -1, 1);
-    ax_vec4* b = ax_copy(x, (size_t)g->points, sizeof *b);
-    ax_panels_solve(panels, pool, x);
+    ax_vec4 *b = ax_copy(x, (size_t)g->points, sizeof *b), *y = ax_alloc_aligned(ax_panels_rows(panels), sizeof *y);
+    memcpy(y, b, (size_t)g->points * sizeof *y);
+    ax_panels_solve(panels, pool, y);
+    memcpy(x, y, (size_t)g->points * sizeof *x);
     double *column = AX_NEW(double, g->points), *product = AX_NEW(double, g->points);
     for (int c = 0; c < 4; ++c) {
         for (int k = 0; k < g->points; ++k)
@@ -291,7 +293,7 @@ static double solve_by_panels(const grid* g, const double (*place)[3], ax_pool* 
             assert_near(product[ax_panels_order(panels)[k]], b[k][c], 1e-12);
     }
     double entries = ax_panels_entries(panels);
-    void* blocks[] = {order, seen, b, column, product};
+    void* blocks[] = {order, seen, b, y, column, product};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_panels_free(panels);

@@ -43,6 +43,7 @@ static void factorise(ax_admm* a, ax_entries* entries)
     ax_order_by_place(&laplacian, (const double(*)[3])place, NULL, order);
     a->factor = ax_panels_analyse(&laplacian, order);
     ax_panels_factor(a->factor, &laplacian, NULL); // an edge Laplacian plus 1e-9 is positive definite
+    a->right = ax_alloc_aligned(ax_panels_rows(a->factor), sizeof *a->right);
     a->row = AX_NEW(int, m->unknowns);
     for (int k = 0; k < m->unknowns; ++k)
         a->row[ax_panels_order(a->factor)[k]] = k;
@@ -58,7 +59,6 @@ ax_admm* ax_admm_make(const ax_deploy_model* m, const double (*x)[3])
     a->x = ax_copy(x, (size_t)m->hinges, sizeof *a->x);
     a->z = ax_alloc((size_t)m->edge_count, sizeof *a->z);
     a->u = ax_calloc((size_t)m->edge_count, sizeof *a->u);
-    a->right = ax_alloc_aligned((size_t)m->unknowns, sizeof *a->right);
     a->gradient = ax_alloc((size_t)m->hinges, sizeof *a->gradient);
     a->force = AX_NEW0(double, m->edge_count);
     a->at = ax_alloc((size_t)m->slide_count, sizeof *a->at);

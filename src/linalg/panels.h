@@ -27,5 +27,7 @@ const int* ax_panels_order(const ax_panels* panels);
 double ax_panels_entries(const ax_panels* panels);
 size_t ax_panels_bytes(const ax_panels* panels); // read by one solve, both passes
 
-// x = A^-1 x in elimination order; n rows, 32-byte aligned. NULL pool: one thread.
-void ax_panels_solve(ax_panels* panels, ax_pool* pool, ax_vec4* x);
+// x = A^-1 x in elimination order, 32-byte aligned. Behind its n rows x has room for what threads sum apart: ax_panels_rows in
+// all. NULL pool: one thread.
+void ax_panels_solve(const ax_panels* panels, ax_pool* pool, ax_vec4* x);
+size_t ax_panels_rows(const ax_panels* panels);

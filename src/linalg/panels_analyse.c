@@ -2,11 +2,13 @@
 #include "linalg/panels_layout.h"
 
 #include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
     LEAST_PARALLEL = 20000, // entries of a factor worth cutting
-    MOST_ZEROS = 8,         // merged supernodes hold at most one zero in so many entries
+    MOST_ZEROS = 4,         // merged supernodes hold at most one zero in so many entries
+    BUSH = 512,             // columns of a subtree that is eliminated level by level
 };
 
 // Per column k of the given order, the earlier columns that the matrix ties to it.
@@ -144,6 +146,14 @@ static int cut_tree(int count, const int* parent, const double* work, int* owner
         load_of[part] += below[open[k]];
         owner[open[k]] = part;
     }
+    // dealt out so that halves and quarters of the parts, which threads begin with, are of a size
+    static const int deal[AX_PANEL_PARTS] = {0, 4, 6, 2, 3, 7, 5, 1};
+    int rank[AX_PANEL_PARTS] = {0};
+    for (int a = 0; a < parts; ++a)
+        for (int b = 0; b < parts; ++b)
+            rank[a] += load_of[b] > load_of[a] || (load_of[b] == load_of[a] && b < a);
+    for (int k = 0; k < opened && parts == AX_PANEL_PARTS; ++k)
+        owner[open[k]] = deal[rank[owner[open[k]]]];
     for (int s = count - 1; s >= 0; --s) // parents precede children
         if (owner[s] == AX_PANEL_PARTS)
             owner[s] = parts;
@@ -192,14 +202,63 @@ static int find_supernodes(int n, const int* parent, const int* count, ax_supern
     return kept;
 }
 
+typedef struct leaf {
+    int node, height, width, rows;
+} leaf;
+
+static int by_level(const void* a, const void* b)
+{
+    const leaf *p = a, *q = b;
+    int by[] = {p->height - q->height, p->width - q->width, p->rows - q->rows, p->node - q->node};
+    for (int k = 0; k < 3; ++k)
+        if (by[k])
+            return by[k];
+    return by[3];
+}
+
+// The order in which postordered supernodes are to be solved. Most have one or two columns and a dozen rows: along a branch each
+// waits for the one before, and no processor foresees how many rows the next one has. So small subtrees go level by level, equals
+// side by side.
+static void order_bushes(int count, const ax_supernode* nodes, int* order)
+{
+    int *size = AX_NEW0(int, count), *columns = AX_NEW0(int, count), *height = AX_NEW0(int, count);
+    leaf* leaves = AX_NEW(leaf, count);
+    for (int k = 0; k < count; ++k) {
+        order[k] = k;
+        ++size[k], columns[k] += nodes[k].width;
+        int above = nodes[k].parent;
+        if (above < 0)
+            continue;
+        size[above] += size[k], columns[above] += columns[k];
+        height[above] = height[k] + 1 > height[above] ? height[k] + 1 : height[above];
+    }
+    for (int k = 0; k < count; ++k) {
+        if (columns[k] > BUSH || (nodes[k].parent >= 0 && columns[nodes[k].parent] <= BUSH))
+            continue;
+        int first = k - size[k] + 1;
+        for (int j = first; j <= k; ++j)
+            leaves[j] = (leaf){j, height[j], nodes[j].width, nodes[j].rows};
+        qsort(leaves + first, (size_t)size[k], sizeof *leaves, by_level);
+        for (int j = first; j <= k; ++j)
+            order[j] = leaves[j].node;
+    }
+    ax_free(size);
+    ax_free(columns);
+    ax_free(height);
+    ax_free(leaves);
+}
+
 // Brings supernodes part by part, the top last, and numbers their columns anew: order becomes that of elimination.
 static void arrange(ax_panels* s, const ax_supernode* from, const int* owner, const int* order)
 {
-    int *place = AX_NEW(int, s->node_count), nodes = 0, columns = 0, panels = 0, index = 0;
+    int *place = AX_NEW(int, s->node_count), *visit = AX_NEW(int, s->node_count), nodes = 0, columns = 0, panels = 0,
+        index = 0;
     size_t value = 0;
+    order_bushes(s->node_count, from, visit);
     for (int part = 0; part <= s->parts; ++part) {
         s->part_node[part] = nodes, s->part_column[part] = columns, s->part_panel[part] = panels;
-        for (int k = 0; k < s->node_count; ++k) {
+        for (int v = 0; v < s->node_count; ++v) {
+            int k = visit[v];
             if (owner[k] != part)
                 continue;
             ax_supernode* node = s->nodes + nodes;
@@ -231,7 +290,12 @@ static void arrange(ax_panels* s, const ax_supernode* from, const int* owner, co
             s->nodes[node->parent].child = place[k];
         }
     }
+    for (int part = 0, at = 0; part <= s->parts; ++part)
+        for (int k = 0; k < s->node_count; ++k)
+            if (owner[k] == part)
+                s->depth_first[at++] = place[k];
     ax_free(place);
+    ax_free(visit);
 }
 
 // The rows of every supernode, ascending: row k goes to the supernodes on the paths from its entries up to its own.
@@ -274,7 +338,7 @@ static void measure_stacks(ax_panels* s)
     for (int part = 0; part <= s->parts; ++part) {
         size_t held = 0;
         for (int k = s->part_node[part]; k < s->part_node[part + 1]; ++k) {
-            const ax_supernode* node = s->nodes + k;
+            const ax_supernode* node = s->nodes + s->depth_first[k];
             size_t front = ax_front_stride(node) * (size_t)(node->width + node->rows);
             s->front_size[part] = front > s->front_size[part] ? front : s->front_size[part];
             for (int c = node->child; c >= s->part_node[part]; c = s->nodes[c].sibling)
@@ -318,6 +382,7 @@ ax_panels* ax_panels_analyse(const ax_sparse* matrix, const int* order)
     }
     s->parts = cut_tree(s->node_count, node_parent, work, owner);
     s->nodes = AX_NEW(ax_supernode, s->node_count);
+    s->depth_first = AX_NEW(int, s->node_count);
     s->panels = AX_NEW(ax_panel, panels);
     arrange(s, nodes, owner, by_post);
     list_earlier(matrix, s->order, start, earlier);
@@ -325,7 +390,6 @@ ax_panels* ax_panels_analyse(const ax_sparse* matrix, const int* order)
     list_rows(s, start, earlier);
     measure_stacks(s);
     s->value = ax_alloc_aligned(s->value_count, sizeof *s->value);
-    s->buffers = ax_alloc_aligned((size_t)s->parts * (size_t)ax_panels_top(s), sizeof *s->buffers);
     void* blocks[] = {start,      earlier,   mark,  parent, count, post,       by_post,
                       new_parent, new_count, nodes, work,   owner, node_parent};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)

@@ -192,7 +192,8 @@ static void factor_part(void* context, int part)
     int *local = AX_NEW(int, s->n), *rows = AX_NEW(int, s->n), *place = AX_NEW(int, s->n);
     size_t held = 0;
     f->stack[part] = AX_NEW(double, s->stack_size[part]);
-    for (int k = s->part_node[part]; k < s->part_node[part + 1] && !atomic_load(&f->failed); ++k) {
+    for (int visit = s->part_node[part]; visit < s->part_node[part + 1] && !atomic_load(&f->failed); ++visit) {
+        int k = s->depth_first[visit];
         const ax_supernode* node = s->nodes + k;
         front own = {.entry = entry, .stride = ax_front_stride(node), .size = node->width + node->rows};
         memset(entry, 0, own.stride * (size_t)own.size * sizeof *entry);

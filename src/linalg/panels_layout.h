@@ -26,7 +26,9 @@ struct ax_panels {
     int n, panel_count, node_count;
     ax_panel* panels;
     ax_supernode* nodes;
-    int* index; // rows; in a part, rows of the top are those of the part's own buffer, numbered from n on
+    int* depth_first; // the nodes of each part as a factorisation visits them
+    int*
+        index; // rows; those of the top are, in a part, of its own buffer for them, which lie part by part behind row n - 1
     double* value;
     size_t index_count, value_count;
     int* order;
@@ -34,7 +36,6 @@ struct ax_panels {
     int part_column[AX_PANEL_PARTS + 2], part_node[AX_PANEL_PARTS + 2]; // where each part begins, then the top
     int part_panel[AX_PANEL_PARTS + 2];
     size_t stack_size[AX_PANEL_PARTS + 1], front_size[AX_PANEL_PARTS + 1]; // doubles that factorising a part needs
-    ax_vec4* buffers; // parts x (n - top_first): what each part sums for the top
 };
 
 static inline int ax_panels_top(const ax_panels* s)

@@ -5,7 +5,7 @@
 #include "solver/anderson.h"
 #include "solver/solver.h"
 
-enum { CHUNK = 64, POINTS_PER_TASK = 4096 }; // blocks of elements and points that one task takes
+enum { CHUNK = 64, POINTS_PER_TASK = 1024 }; // blocks of elements and points that one task takes
 
 // Constraints or loops of one number of points, AX_W to a block.
 typedef struct elements {

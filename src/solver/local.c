@@ -3,13 +3,55 @@
 
 #include <string.h>
 
+typedef double v4 __attribute__((vector_size(32)));
+typedef double lanes4 __attribute__((vector_size(32), aligned(8))); // half the lanes of a block
+
+// Four points to four lanes of x, y and z.
+static inline void spread(const v4 p[4], ax_lane3* x, int lane)
+{
+    v4 xz[2] = {__builtin_shufflevector(p[0], p[1], 0, 4, 2, 6), __builtin_shufflevector(p[2], p[3], 0, 4, 2, 6)};
+    v4 yw[2] = {__builtin_shufflevector(p[0], p[1], 1, 5, 3, 7), __builtin_shufflevector(p[2], p[3], 1, 5, 3, 7)};
+    *(lanes4*)((*x)[0] + lane) = __builtin_shufflevector(xz[0], xz[1], 0, 1, 4, 5);
+    *(lanes4*)((*x)[1] + lane) = __builtin_shufflevector(yw[0], yw[1], 0, 1, 4, 5);
+    *(lanes4*)((*x)[2] + lane) = __builtin_shufflevector(xz[0], xz[1], 2, 3, 6, 7);
+}
+
+// And back, with zeros as the fourth coordinate.
+static inline void collect(const ax_lane3* x, int lane, double scale, v4 p[4])
+{
+    v4 zero = {0}, c[3];
+    for (int k = 0; k < 3; ++k)
+        c[k] = scale * *(const lanes4*)((*x)[k] + lane);
+    v4 xy[2] = {__builtin_shufflevector(c[0], c[1], 0, 4, 2, 6), __builtin_shufflevector(c[0], c[1], 1, 5, 3, 7)};
+    v4 zw[2] = {__builtin_shufflevector(c[2], zero, 0, 4, 2, 6), __builtin_shufflevector(c[2], zero, 1, 5, 3, 7)};
+    for (int k = 0; k < 2; ++k) {
+        p[k] = __builtin_shufflevector(xy[k], zw[k], 0, 1, 4, 5);
+        p[k + 2] = __builtin_shufflevector(xy[k], zw[k], 2, 3, 6, 7);
+    }
+}
+
 void ax_gather(const ax_solver* s, const elements* e, int block, ax_lane3* x)
 {
     const int* index = e->index + (size_t)block * (size_t)e->points_each * AX_W;
-    for (int k = 0; k < e->points_each; ++k)
-        for (int l = 0; l < AX_W; ++l) {
-            const double* at = s->x[index[k * AX_W + l]];
-            x[k][0][l] = at[0], x[k][1][l] = at[1], x[k][2][l] = at[2];
+    for (int k = 0; k < e->points_each; ++k, index += AX_W)
+        for (int lane = 0; lane < AX_W; lane += 4) {
+            v4 p[4];
+            for (int l = 0; l < 4; ++l)
+                p[l] = *(const v4*)s->x[index[lane + l]];
+            spread(p, x + k, lane);
+        }
+}
+
+// Rows y of a block of edges, without their ends in between.
+static void gather_edges(const ax_solver* s, const elements* e, int block, ax_lane3* y)
+{
+    const int* index = e->index + (size_t)block * (size_t)e->points_each * AX_W;
+    for (int r = 0; r < e->rows_each; ++r, index += 2 * AX_W)
+        for (int lane = 0; lane < AX_W; lane += 4) {
+            v4 p[4];
+            for (int l = 0; l < 4; ++l)
+                p[l] = *(const v4*)s->x[index[AX_W + lane + l]] - *(const v4*)s->x[index[lane + l]];
+            spread(p, y + r, lane);
         }
 }
 
@@ -32,11 +74,7 @@ static void form_rows(const group* g, const ax_lane3* x, ax_lane3* y)
                     y[k][c][l] = x[k][c][l] - mean;
             }
         return;
-    case AX_ROWS_EDGES:
-        for (int r = 0; r < n / 2; ++r)
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l)
-                    y[r][c][l] = x[2 * r + 1][c][l] - x[2 * r][c][l];
+    case AX_ROWS_EDGES: // gathered as such
         return;
     case AX_ROWS_ARMS:
         for (int r = 0; r < n - 1; ++r)
@@ -55,53 +93,49 @@ static void form_rows(const group* g, const ax_lane3* x, ax_lane3* y)
     }
 }
 
+// Rows of a block of elements, one vector per point (or edge), for the points to sum.
+static void write_rows(ax_solver* s, const elements* e, int block, const ax_lane3* out, double scale)
+{
+    int rows = e->rows_each;
+    ax_vec4* row = s->row + e->first_row + (size_t)block * AX_W * (size_t)rows;
+    for (int r = 0; r < rows; ++r)
+        for (int lane = 0; lane < AX_W; lane += 4) {
+            v4 p[4];
+            collect(out + r, lane, scale, p);
+            for (int l = 0; l < 4; ++l)
+                *(v4*)row[(lane + l) * rows + r] = p[l];
+        }
+}
+
 // Contributions w A'z per point (per row for edges, whose points take it with opposite signs).
-static void form_contributions(const group* g, const ax_lane3* z, ax_lane3* out)
+static void write_contributions(ax_solver* s, const group* g, int block, const ax_lane3* z)
 {
     int n = g->e.points_each;
-    double w = g->weight;
+    ax_lane3 out[AX_MOST_POINTS];
     switch (g->type->pattern) {
     case AX_ROWS_POINTS:
     case AX_ROWS_EDGES:
-        for (int r = 0; r < g->rows; ++r)
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l)
-                    out[r][c][l] = w * z[r][c][l];
-        return;
     case AX_ROWS_CENTRED: // projections of centred rows are centred, so A'z = z
-        for (int k = 0; k < n; ++k)
-            for (int c = 0; c < 3; ++c)
-                for (int l = 0; l < AX_W; ++l)
-                    out[k][c][l] = w * z[k][c][l];
+        write_rows(s, &g->e, block, z, g->weight);
         return;
     case AX_ROWS_ARMS:
         memset(out, 0, sizeof *out);
         for (int r = 0; r < n - 1; ++r)
             for (int c = 0; c < 3; ++c)
                 for (int l = 0; l < AX_W; ++l) {
-                    out[r + 1][c][l] = w * z[r][c][l];
-                    out[0][c][l] -= w * z[r][c][l];
+                    out[r + 1][c][l] = z[r][c][l];
+                    out[0][c][l] -= z[r][c][l];
                 }
-        return;
+        break;
     case AX_ROWS_SUM:
         for (int k = 0; k < n; ++k) {
-            double coefficient = w * g->type->coefficient(n, k);
+            double coefficient = g->type->coefficient(n, k);
             for (int c = 0; c < 3; ++c)
                 for (int l = 0; l < AX_W; ++l)
                     out[k][c][l] = coefficient * z[0][c][l];
         }
     }
-}
-
-// Rows of a block of elements, one vector per point (or edge), for the points to sum.
-static void write_rows(ax_solver* s, const elements* e, int block, const ax_lane3* out, double scale)
-{
-    ax_vec4* row = s->row + e->first_row + (size_t)block * AX_W * (size_t)e->rows_each;
-    for (int l = 0; l < AX_W; ++l)
-        for (int r = 0; r < e->rows_each; ++r) {
-            double* to = row[l * e->rows_each + r];
-            to[0] = scale * out[r][0][l], to[1] = scale * out[r][1][l], to[2] = scale * out[r][2][l], to[3] = 0;
-        }
+    write_rows(s, &g->e, block, (const ax_lane3*)out, g->weight);
 }
 
 // Shortens multipliers longer than the bound, all rows of a constraint alike: centred rows stay centred, forces keep their
@@ -147,8 +181,12 @@ static void project_chunk(void* context, int chunk)
     ax_lane3 x[AX_MOST_POINTS], y[AX_MOST_POINTS], p[AX_MOST_POINTS], out[AX_MOST_POINTS];
     for (int b = chunk * CHUNK; b < end; ++b) {
         int live = live_lanes(&g->e, b);
-        ax_gather(s, &g->e, b, x);
-        form_rows(g, (const ax_lane3*)x, y);
+        if (g->type->pattern == AX_ROWS_EDGES)
+            gather_edges(s, &g->e, b, y);
+        else {
+            ax_gather(s, &g->e, b, x);
+            form_rows(g, (const ax_lane3*)x, y);
+        }
         ax_lane3* dual = g->dual + (size_t)b * (size_t)rows;
         if (multipliers)
             for (int r = 0; r < rows; ++r)
@@ -181,8 +219,7 @@ static void project_chunk(void* context, int chunk)
                         for (int l = 0; l < AX_W; ++l)
                             p[r][c][l] -= u[r][c][l];
         }
-        form_contributions(g, (const ax_lane3*)p, out);
-        write_rows(s, &g->e, b, (const ax_lane3*)out, 1);
+        write_contributions(s, g, b, (const ax_lane3*)p);
     }
     if (tallying) {
         t.energy = g->weight * t.primal_square;
@@ -224,7 +261,13 @@ static void run_elements(ax_solver* s)
         }
 }
 
-typedef double v4 __attribute__((vector_size(32)));
+// The vector of a row as a point sums it: edges stand with opposite signs at their ends. The sign is data, no branch: it is as good
+// as random.
+static inline v4 incident_row(const ax_solver* s, int incident)
+{
+    static const double sign[2] = {1, -1};
+    return sign[incident & 1] * *(const v4*)s->row[incident >> 1];
+}
 
 // Energy of dead loads at a point and, in a time step, of its distance from where inertia would take it.
 static double point_energy(const ax_solver* s, int v)
@@ -250,10 +293,8 @@ static void sum_points(void* context, int task)
         if (s->tallying)
             energy += point_energy(s, v);
         v4 sum = *(const v4*)s->base[v];
-        for (int k = s->incident_start[v]; k < s->incident_start[v + 1]; ++k) {
-            v4 row = *(const v4*)s->row[s->incident[k] >> 1];
-            sum += s->incident[k] & 1 ? -row : row;
-        }
+        for (int k = s->incident_start[v]; k < s->incident_start[v + 1]; ++k)
+            sum += incident_row(s, s->incident[k]);
         *(v4*)s->x[v] = sum;
     }
     if (s->tallying)
@@ -272,10 +313,8 @@ static void balance_points(void* context, int task)
             acting[c] = s->dead ? s->load_factor * s->dead[v][c] : 0;
         t.energy -= 2 * (acting[0] * s->x[v][0] + acting[1] * s->x[v][1] + acting[2] * s->x[v][2]);
         for (int k = s->incident_start[v]; k < s->incident_start[v + 1]; ++k) {
-            int from = s->incident[k] >> 1;
-            v4 row = *(const v4*)s->row[from];
-            row = s->incident[k] & 1 ? -row : row;
-            if (from < s->first_load_row)
+            v4 row = incident_row(s, s->incident[k]);
+            if (s->incident[k] >> 1 < s->first_load_row)
                 reacting += row;
             else
                 acting += row;

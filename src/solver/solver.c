@@ -430,7 +430,8 @@ static void reorder(ax_solver* s, const int* order, const unsigned char* held)
         position[order[k]] = k;
     ax_vec4** states[] = {&s->x, &s->velocity};
     for (int k = 0; k < 2; ++k) {
-        ax_vec4 *from = *states[k], *to = ax_alloc_aligned((size_t)s->n, sizeof *to);
+        ax_vec4 *from = *states[k],
+                *to = ax_alloc_aligned(k == 0 ? ax_panels_rows(s->panels) : (size_t)s->n, sizeof *to);
         for (int v = 0; v < s->n; ++v)
             memcpy(to[position[v]], from[s->position[v]], sizeof *to);
         ax_free(from);
