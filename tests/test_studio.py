@@ -10,12 +10,14 @@ import signal
 import socket
 import sqlite3
 import struct
+import subprocess
 import time
 import unittest
+from pathlib import Path
 
 import judge_design
 import support.tap
-from support.command import QUICK, ROOT, SURFACES, CommandCase
+from support.command import AUXSHELL, QUICK, ROOT, SURFACES, CommandCase
 from support.studio import EXACT, SECTIONS, SETTLED, Closed, Page, Socket, Studio
 
 DOME = [{"op": "start_circle", "radius": 2, "triangles": 300, "scale": 1.3},
@@ -416,6 +418,25 @@ class Documents(StudioCase):
             self.agree(page.ask("new", example="hybrid-shell"))
             page.until(lambda: page.events["document"]["name"] == "hybrid-shell")
             self.assertIn("arch1", [selection["name"] for selection in page.events["document"]["selections"]])
+
+    @unittest.skipIf(QUICK, "times are of the release build")
+    def test_every_example_opens_within_a_second(self):
+        build = Path(AUXSHELL).resolve().parent.parent
+        subprocess.run(["ninja", "--quiet", "-C", build, "example_documents"], check=True, stdout=subprocess.DEVNULL)
+        studio = self.start(steps=None)
+        page = self.page(studio)
+        slowest = 0
+        for example in page.hello["examples"]:
+            name = example["name"]
+            with self.subTest(example=name):
+                start = time.monotonic()
+                self.agree(page.ask("new", example=name))
+                page.until(lambda: page.events["document"]["name"] == name and page.last.flags & EXACT)
+                slowest = max(slowest, time.monotonic() - start)
+                self.assertGreater(len(page.events["document"]["steps"]), 2)
+        print(f"# the slowest of {len(page.hello['examples'])} examples took {slowest:.2f} s")
+        self.assertLess(slowest, 1)
+        page.ask("close", discard=True)
 
     def test_what_nobody_edited_is_not_kept(self):
         studio = self.start()

@@ -20,15 +20,25 @@ const char* hello_first_example(void)
     return "welcome";
 }
 
-char* hello_example_path(const char* name)
+static char* path_of(const char* folder, const char* name, const char* ends)
 {
-    size_t size = strlen(AX_EXAMPLES_PATH) + strlen(name) + sizeof ending + 1;
+    size_t size = strlen(folder) + strlen(name) + strlen(ends) + 2;
     char* path = ax_alloc(size, 1);
-    snprintf(path, size, "%s/%s%s", AX_EXAMPLES_PATH, name, ending);
+    snprintf(path, size, "%s/%s%s", folder, name, ends);
     if (files_name_is_plain(name) && access(path, R_OK) == 0)
         return path;
     ax_free(path);
     return NULL;
+}
+
+char* hello_example_path(const char* name)
+{
+    return path_of(AX_EXAMPLES_PATH, name, ending);
+}
+
+char* hello_example_document(const char* name)
+{
+    return path_of(AX_EXAMPLE_DOCUMENTS_PATH, name, ".auxshell");
 }
 
 static int is_recipe(const struct dirent* entry)

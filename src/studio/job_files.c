@@ -376,6 +376,56 @@ static ax_status open_session(desk* d, ax_error* error)
     return status;
 }
 
+static bool same_steps(const ax_session* session, const ax_recipe* recipe)
+{
+    int count = ax_recipe_count(recipe);
+    if (ax_session_at(session) != count || ax_recipe_count(ax_session_recipe(session)) != count)
+        return false;
+    for (int k = 0; k < count; ++k)
+        if (strcmp(ax_recipe_operator(ax_session_recipe(session), k), ax_recipe_operator(recipe, k)) != 0)
+            return false;
+    return true;
+}
+
+// A copy of the document that the build made of the recipe, unless it was made of another one. False: there is none.
+static bool open_made(desk* d, const char* made, const char* recipe_path)
+{
+    ax_recipe* recipe = NULL;
+    bool opened = ax_recipe_read(recipe_path, &recipe, NULL) == AX_OK &&
+                  copy_file(made, d->path, true, NULL) == AX_OK && open_session(d, NULL) == AX_OK;
+    if (opened && !same_steps(d->session, recipe)) {
+        ax_session_close(d->session);
+        d->session = NULL;
+        opened = false;
+    }
+    if (opened) {
+        const ax_moment* moments;
+        int now;
+        d->beginning = ax_session_history(d->session, &moments, &now);
+    } else {
+        ax_free(d->folder);
+        d->folder = NULL;
+    }
+    ax_recipe_free(recipe);
+    return opened;
+}
+
+static ax_status create_from_example(desk* d, const char* name, ax_error* error)
+{
+    char *recipe = hello_example_path(name), *made = hello_example_document(name);
+    ax_status status = AX_OK;
+    if (!recipe)
+        status = ax_fail(error, AX_BAD_INPUT, "There is no example \"%.100s\".", name);
+    else if (made && open_made(d, made, recipe)) {
+        ax_free(d->folder);
+        d->folder = folder_of(recipe);
+    } else
+        status = create_from_file(d, recipe, error);
+    ax_free(recipe);
+    ax_free(made);
+    return status;
+}
+
 ax_status job_open(desk* d, ax_error* error)
 {
     desk_source* from = &d->source;
@@ -402,11 +452,7 @@ ax_status job_open(desk* d, ax_error* error)
         return create_from_file(d, from->path, error);
     if (from->recipe)
         return create_from_steps(d, from->recipe, from->files, error);
-    char* example = hello_example_path(from->example);
-    status = example ? create_from_file(d, example, error)
-                     : ax_fail(error, AX_BAD_INPUT, "There is no example \"%.100s\".", from->example);
-    ax_free(example);
-    return status;
+    return create_from_example(d, from->example, error);
 }
 
 // A draft that nobody edited, or that is not wanted, goes.
