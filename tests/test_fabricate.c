@@ -472,7 +472,12 @@ static void pieces_fit_their_sheets_and_hold_together(void** state)
                 *a = *b = *a < *b ? *a : *b, changed = true;
         }
     }
-    int rims = 0, outlines = 0, labels = 0;
+    int rims = 0, outlines = 0, labels = 0, *size = calloc((size_t)plan.panel_count, sizeof *size);
+    for (int t = 0; t < plan.panel_count; ++t)
+        ++size[plan.panels[t].piece];
+    for (int t = 0; t < plan.panel_count; ++t)
+        assert_true(size[plan.panels[t].piece] >= 4); // fewer are hard to handle
+    free(size);
     for (int t = 0; t < plan.panel_count; ++t) {
         rims += piece[t] == t;
         assert_int_equal(plan.panels[t].piece, plan.panels[piece[t]].piece);

@@ -1,5 +1,6 @@
 // Pieces of a one-piece sheet: all panels if they fit the stock, else bands between kagome lines, cut along lines of another family.
-// What then still does not fit is halved until it does.
+// What then still does not fit is halved until it does. Last, pieces that fit a sheet together are joined again, the smallest first, and
+// a few panels that fit with none take some of their neighbour's.
 //
 // A kagome line runs straight along panels' edges, with panels of one kind above it and of the other below, joined at its hinges.
 // There are three families of lines; the strip between two lines of one family holds pairs of panels that touch in its middle. Up
@@ -142,10 +143,11 @@ static int cut(splitting* s, int family, int middle, int count, int* panels)
     return first;
 }
 
+enum { SMALL = 4 }; // pieces of fewer panels are hard to handle
+
 // Moves parts of `panels` too small to be handled, a few panels in the corner of a cut, to its end; returns how many stay.
 static int put_small_last(splitting* s, int count, int* panels)
 {
-    enum { SMALL = 4 };
     int parts = number_parts(s->w, count, panels, s->mark, s->stack), stay = 0, go = 0;
     int* size = AX_NEW0(int, parts);
     for (int i = 0; i < count; ++i)
@@ -286,6 +288,177 @@ static ax_status peel(splitting* s, int family, int count, int* panels, ax_error
     return count ? split(s, count, panels, error) : AX_OK;
 }
 
+// --- joining pieces again
+
+typedef struct joining {
+    splitting* s;
+    int *head, *next, *count; // panels of each piece, as a list
+    int* set;                 // room for all panels
+    int *shared, *near;       // hinges that each piece shares with the one at hand; pieces that share any
+} joining;
+
+static int piece_of(const joining* j, int panel)
+{
+    return j->s->w->plan->panels[panel].piece;
+}
+
+// The panel on the other side of corner k, -1: none.
+static int across(const splitting* s, int panel, int k)
+{
+    const int* held = s->w->held[s->w->linkage->triangles[panel][k]];
+    return held[held[0] == panel];
+}
+
+static void put_in(joining* j, int panel, int piece)
+{
+    j->s->w->plan->panels[panel].piece = piece;
+    j->next[panel] = j->head[piece];
+    j->head[piece] = panel;
+    ++j->count[piece];
+}
+
+static int list_piece(const joining* j, int piece, int* set)
+{
+    int count = 0;
+    for (int t = j->head[piece]; t >= 0; t = j->next[t])
+        set[count++] = t;
+    return count;
+}
+
+// Pieces that share hinges with this one, those that share most first; returns how many.
+static int find_neighbours(joining* j, int piece)
+{
+    int count = 0;
+    for (int t = j->head[piece]; t >= 0; t = j->next[t])
+        for (int k = 0; k < 3; ++k) {
+            int other = across(j->s, t, k);
+            if (other >= 0 && piece_of(j, other) != piece && j->shared[piece_of(j, other)]++ == 0)
+                j->near[count++] = piece_of(j, other);
+        }
+    for (int i = 1; i < count; ++i) // they are few
+        for (int k = i; k > 0 && j->shared[j->near[k]] > j->shared[j->near[k - 1]]; --k) {
+            int other = j->near[k];
+            j->near[k] = j->near[k - 1], j->near[k - 1] = other;
+        }
+    for (int i = 0; i < count; ++i)
+        j->shared[j->near[i]] = 0;
+    return count;
+}
+
+static bool join(joining* j, int piece, int to)
+{
+    int count = list_piece(j, piece, j->set);
+    count += list_piece(j, to, j->set + count);
+    if (!fits(j->s, count, j->set))
+        return false;
+    for (int t = j->head[piece], next; t >= 0; t = next) {
+        next = j->next[t];
+        put_in(j, t, to);
+    }
+    j->head[piece] = -1, j->count[piece] = 0;
+    return true;
+}
+
+// Whether a panel can go from its piece to another: that one fits a sheet with it, and its own stays in one.
+static bool can_go(const joining* j, int panel, int to)
+{
+    int count = list_piece(j, to, j->set), rest = 0;
+    j->set[count++] = panel;
+    if (!fits(j->s, count, j->set))
+        return false;
+    for (int t = j->head[piece_of(j, panel)]; t >= 0; t = j->next[t])
+        if (t != panel)
+            j->set[rest++] = t;
+    bool whole = number_parts(j->s->w, rest, j->set, j->s->mark, j->s->stack) == 1;
+    for (int i = 0; i < rest; ++i)
+        j->s->mark[j->set[i]] = -1;
+    return whole;
+}
+
+// A panel of `from` that can go to the small piece beside it, -1: none.
+static int find_panel(const joining* j, int piece, int from)
+{
+    for (int t = j->head[piece]; t >= 0; t = j->next[t])
+        for (int k = 0; k < 3; ++k) {
+            int panel = across(j->s, t, k);
+            if (panel >= 0 && piece_of(j, panel) == from && can_go(j, panel, piece))
+                return panel;
+        }
+    return -1;
+}
+
+static void take_some(joining* j, int piece, int from)
+{
+    for (int panel; j->count[piece] < SMALL && j->count[from] > SMALL && (panel = find_panel(j, piece, from)) >= 0;) {
+        int* link = &j->head[from];
+        while (*link != panel)
+            link = &j->next[*link];
+        *link = j->next[panel];
+        --j->count[from];
+        put_in(j, panel, piece);
+    }
+}
+
+typedef struct sized {
+    int count, piece;
+} sized;
+
+static int smallest_first(const void* a, const void* b)
+{
+    const sized *x = a, *y = b;
+    return x->count != y->count ? x->count - y->count : x->piece - y->piece;
+}
+
+static bool join_all(joining* j, sized* order)
+{
+    bool any = false;
+    for (int p = 0; p < j->s->pieces; ++p)
+        order[p] = (sized){j->count[p], p};
+    qsort(order, (size_t)j->s->pieces, sizeof *order, smallest_first);
+    for (int i = 0; i < j->s->pieces; ++i) {
+        bool joined = j->count[order[i].piece] == 0;
+        for (int k = 0, near = joined ? 0 : find_neighbours(j, order[i].piece); k < near && !joined; ++k)
+            any |= joined = join(j, order[i].piece, j->near[k]);
+    }
+    return any;
+}
+
+static void join_pieces(splitting* s)
+{
+    int n = s->w->linkage->triangle_count, left = 0;
+    joining j = {.s = s,
+                 .head = AX_NEW(int, s->pieces),
+                 .next = AX_NEW(int, n),
+                 .count = AX_NEW0(int, s->pieces),
+                 .set = AX_NEW(int, n),
+                 .shared = AX_NEW0(int, s->pieces),
+                 .near = AX_NEW(int, s->pieces)};
+    sized* order = AX_NEW(sized, s->pieces);
+    memset(j.head, -1, (size_t)s->pieces * sizeof *j.head);
+    for (int t = 0; t < n; ++t)
+        put_in(&j, t, piece_of(&j, t));
+    while (join_all(&j, order))
+        continue;
+    for (int p = 0; p < s->pieces; ++p)
+        if (j.count[p] > 0 && j.count[p] < SMALL)
+            for (int k = 0, near = find_neighbours(&j, p); k < near; ++k)
+                take_some(&j, p, j.near[k]);
+    for (int p = 0; p < s->pieces; ++p)
+        if (j.count[p] > 0) {
+            for (int t = j.head[p]; t >= 0; t = j.next[t])
+                s->w->plan->panels[t].piece = left;
+            ++left;
+        }
+    s->pieces = left;
+    ax_free(j.head);
+    ax_free(j.next);
+    ax_free(j.count);
+    ax_free(j.set);
+    ax_free(j.shared);
+    ax_free(j.near);
+    ax_free(order);
+}
+
 // Cuts all panels into bands of equally many strips, and these into pieces.
 static ax_status cut_bands(splitting* s, int family, int bands, int count, int* panels, ax_error* error)
 {
@@ -305,6 +478,8 @@ static ax_status cut_bands(splitting* s, int family, int bands, int count, int* 
         status = first ? peel(s, (family + 1) % 3, first, panels, error) : AX_OK;
         panels += first, count -= first;
     }
+    if (status == AX_OK)
+        join_pieces(s);
     return status;
 }
 
