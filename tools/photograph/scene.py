@@ -472,7 +472,7 @@ def main():
         for item in bpy.context.selected_objects:
             item.data.materials.clear()
             item.data.materials.append(plain("reference", (0.55, 0.55, 0.55), 0.8))
-    seen = points + [Vector((x, y, ground)) for x in (low.x, high.x) for y in (low.y, high.y)] if options.lift else points
+    seen = points + [Vector((p.x, p.y, ground)) for p in points] if options.lift else points
     eye = add_camera(seen, options)
     add_people(options.people, points, ground, eye, plain("figure", (0.16, 0.165, 0.18), 0.65))
     add_ground(ground, 60 * (high - low).length)
