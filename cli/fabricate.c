@@ -1,7 +1,11 @@
 #include "fabricate.h"
 
+#include "ax/document.h"
+
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
+#include <time.h>
 
 void fabricate_defaults(fabricate_arguments* arguments)
 {
@@ -11,21 +15,47 @@ void fabricate_defaults(fabricate_arguments* arguments)
     arguments->frames = usual.frames;
 }
 
-ax_status fabricate_choose(const fabricate_arguments* a, ax_fabricate_options* options, ax_profile* profile,
+// "2026-05-31"
+static bool is_day(const char* words)
+{
+    static const char pattern[] = "dddd-dd-dd";
+    for (int k = 0; k < (int)sizeof pattern; ++k)
+        if (pattern[k] == 'd' ? !isdigit((unsigned char)words[k]) : words[k] != pattern[k])
+            return false;
+    return true;
+}
+
+static ax_status choose_date(const char* words, const char* document, char date[32], ax_error* error)
+{
+    *date = '\0';
+    if (!words && document)
+        ax_day_words(ax_document_time(document), date);
+    else if (words && strcmp(words, "today") == 0)
+        ax_day_words((double)time(NULL), date);
+    else if (words && is_day(words))
+        snprintf(date, 32, "%s", words);
+    else if (words && strcmp(words, "none") != 0)
+        return ax_fail(error, AX_USAGE, "--date takes a day such as 2026-05-31, or today, or none; not \"%s\".", words);
+    return AX_OK;
+}
+
+ax_status fabricate_choose(const fabricate_arguments* a, const char* document, fabricate_choice* choice,
                            ax_error* error)
 {
+    ax_fabricate_options* options = &choice->options;
     *options = ax_fabricate_options_default();
     options->kerf = a->kerf, options->margin = a->margin, options->spacing = a->spacing;
     options->frames = a->frames;
-    options->profile = profile;
-    ax_status status = ax_profile_find(a->profile ? a->profile : "generic", profile, error);
+    options->profile = &choice->profile;
+    options->date = choice->date;
+    ax_status status = ax_profile_find(a->profile ? a->profile : "generic", &choice->profile, error);
     if (status == AX_OK && a->joint)
         status = ax_fabricate_set_joint(options, a->joint, error);
     if (status == AX_OK && a->material)
         status = ax_fabricate_set_material(options, a->material, error);
     if (status == AX_OK && a->sheet)
         status = ax_fabricate_set_sheet(options, a->sheet, error);
-    return status;
+    return status == AX_OK ? choose_date(a->date, document, choice->date, error) : status;
 }
 
 static void print_forces(const ax_cut_plan* p, FILE* out)

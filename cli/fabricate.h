@@ -6,7 +6,7 @@
 #include "ax/fabricate.h"
 
 typedef struct fabricate_arguments {
-    const char *joint, *material, *sheet, *profile;
+    const char *joint, *material, *sheet, *profile, *date;
     double kerf, margin, spacing;
     int frames;
 } fabricate_arguments;
@@ -51,6 +51,12 @@ typedef struct fabricate_arguments {
          .hi = 1000,                                                                                                   \
          .unit = "mm",                                                                                                 \
          .offset = offsetof(arguments, member.margin)},                                                                \
+        {.name = "--date",                                                                                             \
+         .value = "DAY",                                                                                               \
+         .text = "printed on the sheets: 2026-05-31, today, or none",                                                  \
+         .kind = OPTION_TEXT,                                                                                          \
+         .fallback = "the day (UTC) of the last change of the document",                                               \
+         .offset = offsetof(arguments, member.date)},                                                                  \
         {.name = "--frames",                                                                                           \
          .value = "N",                                                                                                 \
          .text = "states between flat and open in which panels are held against each other",                           \
@@ -63,8 +69,14 @@ typedef struct fabricate_arguments {
     }
 
 void fabricate_defaults(fabricate_arguments* arguments);
-// Makes options of the words; `profile` must outlive them.
-ax_status fabricate_choose(const fabricate_arguments* arguments, ax_fabricate_options* options, ax_profile* profile,
+// The options, and what they borrow: not to be copied.
+typedef struct fabricate_choice {
+    ax_fabricate_options options;
+    ax_profile profile;
+    char date[32];
+} fabricate_choice;
+// `document`: whose day is the date unless one is given; NULL: none.
+ax_status fabricate_choose(const fabricate_arguments* arguments, const char* document, fabricate_choice* choice,
                            ax_error* error);
 
 // Sheets, material, time, parts, and what collides, in a few lines.

@@ -3,8 +3,10 @@
 import csv
 import json
 import math
+import os
 import re
 import subprocess
+import time
 import unittest
 import xml.etree.ElementTree as ElementTree
 import zipfile
@@ -155,6 +157,27 @@ class CutFiles(CommandCase):
         self.document = other
         text = subprocess.run(["pdfinfo", self.export("dome.pdf")], capture_output=True, text=True, check=True).stdout
         self.assertIn("Kuppel ä)", text)
+
+    def test_sheets_bear_the_day_of_the_recipe(self):
+        """That of the last step, of a finished design that of the file; never the day of export."""
+        def day(*words):
+            text = subprocess.run(["pdfinfo", "-isodates", self.export("dated.pdf", *words)], capture_output=True, text=True, check=True)
+            found = re.search(r"CreationDate: +([\d-]+)", text.stdout)
+            return found and found[1]
+        os.utime(self.document, (86400 * 365.2425 * 30, 86400 * 365.2425 * 30))
+        self.assertEqual(day(), "2000-01-01")
+        self.assertEqual(day("--date", "2024-02-29"), "2024-02-29")
+        self.assertIsNone(day("--date", "none"))
+        with_note, without = (self.export("dome.svg", "--date", word).read_text() for word in ("2024-02-29", "none"))
+        self.assertGreater(len(re.search(r'id="note" d="([^"]*)"', with_note)[1]), len(re.search(r'id="note" d="([^"]*)"', without)[1]))
+        self.document = self.folder / "sheet.auxshell"
+        recipe = self.folder / "sheet.json"
+        recipe.write_text(json.dumps({"format": "auxshell-recipe", "version": 1, "operators": [{"op": "start_circle", "radius": 1, "triangles": 100, "scale": 1.2}]}))
+        self.succeed("run", recipe, "-o", self.document)
+        moments = json.loads(self.succeed("history", self.document, "--json"))["moments"]
+        os.utime(self.document, (0, 0))
+        self.assertEqual(day(), time.strftime("%Y-%m-%d", time.gmtime(moments[-1]["time"])))
+        self.refuse(2, "--date", "export", self.document, "-o", self.folder / "dated.pdf", "--date", "yesterday")
 
     def test_tiles_cover_the_sheet(self):
         tiles = self.pdf_pages(self.export("dome.a4.pdf"))

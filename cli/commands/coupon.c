@@ -37,14 +37,13 @@ static const command_option options[] = {
 static ax_status run(const void* given, ax_error* error)
 {
     const arguments* a = given;
-    ax_fabricate_options chosen;
-    ax_profile profile;
+    fabricate_choice chosen;
     ax_cut_plan plan = {0};
     ax_status status = output_check(a->out, NULL, error);
     if (status == AX_OK)
-        status = fabricate_choose(&a->fabricate, &chosen, &profile, error);
+        status = fabricate_choose(&a->fabricate, NULL, &chosen, error);
     if (status == AX_OK)
-        status = ax_fabricate_coupon(a->kind, &chosen, &plan, error);
+        status = ax_fabricate_coupon(a->kind, &chosen.options, &plan, error);
     if (status == AX_OK)
         status = ax_export_plan(&plan, a->out, error);
     if (status == AX_OK)

@@ -112,21 +112,23 @@ static ax_status run(const void* given, ax_error* error)
     const arguments* a = given;
     ax_design design = {0};
     ax_cut_plan plan = {0};
-    ax_fabricate_options chosen;
-    ax_profile profile;
+    fabricate_choice chosen;
     ax_status status = output_check(a->out, NULL, error);
     if (status == AX_OK && ends_in(a->out, ".recipe.json"))
         return export_recipe(a, error);
     if (status == AX_OK)
-        status = fabricate_choose(&a->fabricate, &chosen, &profile, error);
-    chosen.sizes = a->clusters;
+        status = fabricate_choose(&a->fabricate, a->document, &chosen, error);
+    chosen.options.sizes = a->clusters;
     if (status == AX_OK)
         status = ax_document_load(a->document, &design, error);
     if (status == AX_OK) {
         char title[256];
         title_of(a->document, title, sizeof title);
-        const ax_export_options how = {
-            .state = a->state, .title = title, .fabricate = &chosen, .progress = progress_reporter(), .plan = &plan};
+        const ax_export_options how = {.state = a->state,
+                                       .title = title,
+                                       .fabricate = &chosen.options,
+                                       .progress = progress_reporter(),
+                                       .plan = &plan};
         status = ax_export(&design, a->out, &how, error);
         progress_end();
     }

@@ -84,9 +84,8 @@ static ax_status run(const void* given, ax_error* error)
     const arguments* a = given;
     ax_design design = {0};
     ax_cut_plan plan = {0};
-    ax_fabricate_options chosen;
-    ax_profile profile;
-    ax_status status = fabricate_choose(&a->fabricate, &chosen, &profile, error);
+    fabricate_choice chosen;
+    ax_status status = fabricate_choose(&a->fabricate, a->document, &chosen, error);
     if (status == AX_OK && !a->document) {
         fabricate_list(stdout);
         return AX_OK;
@@ -94,7 +93,7 @@ static ax_status run(const void* given, ax_error* error)
     if (status == AX_OK)
         status = ax_document_load(a->document, &design, error);
     if (status == AX_OK)
-        status = ax_fabricate(&design, &chosen, progress_reporter(), &plan, error);
+        status = ax_fabricate(&design, &chosen.options, progress_reporter(), &plan, error);
     progress_end();
     if (status == AX_OK && a->json)
         json_print(plan_json(&plan), stdout);

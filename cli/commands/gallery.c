@@ -148,22 +148,21 @@ static ax_status write_files(const char* folder, const char* name, const json_t*
 {
     static const char* const whole[] = {".json", ".glb", ".svg", ".dxf", ".csv", ".plan.pdf", ".frame.pdf"};
     char path[PATH_MAX];
-    ax_fabricate_options chosen;
-    ax_profile profile;
+    fabricate_choice chosen;
     fabricate_arguments how;
     const json_t* make = json_object_get(example, "make");
     fabricate_defaults(&how);
     how.joint = json_string_value(json_object_get(make, "joint"));
     how.material = json_string_value(json_object_get(make, "material"));
     how.sheet = json_string_value(json_object_get(make, "sheet"));
-    ax_status status = fabricate_choose(&how, &chosen, &profile, error);
+    ax_status status = fabricate_choose(&how, NULL, &chosen, error);
     if (status == AX_OK)
         status = path_of(folder, name, ".recipe.json", path, error);
     if (status == AX_OK)
         status = ax_recipe_write(recipe, path, error);
     int count = (int)(sizeof whole / sizeof *whole) - (design->simulated ? 0 : 1); // without supports no frame
     for (int k = 0; k < count && status == AX_OK; ++k) {
-        const ax_export_options o = {.title = name, .fabricate = &chosen, .progress = progress_reporter()};
+        const ax_export_options o = {.title = name, .fabricate = &chosen.options, .progress = progress_reporter()};
         status = path_of(folder, name, whole[k], path, error);
         if (status == AX_OK)
             status = ax_export(design, path, &o, error);

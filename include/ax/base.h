@@ -64,5 +64,8 @@ size_t ax_allocation_count(void);
 // The candidate that a misspelt word most likely meant, by changed letters; NULL if none is near.
 const char* ax_nearest_word(const char* word, int count, const char* const* candidates);
 
+// The day of a time (seconds since 1970) in UTC, "2026-05-31"; empty if it is not finite or not within the years 1 to 9999.
+void ax_day_words(double time, char words[16]);
+
 // Version of the library, "MAJOR.MINOR.PATCH".
 const char* ax_version(void);

@@ -10,3 +10,6 @@ ax_status ax_document_save(const char* path, const ax_design* design, ax_error* 
 // (ax_form_snapshot). AX_BAD_INPUT when the file is missing, no document, damaged, empty, or written by a newer version (the message
 // says which).
 ax_status ax_document_load(const char* path, ax_design* design, ax_error* error);
+// When the present moment of the document's history was made, or if that is not known, when the file was written: seconds since 1970.
+// NaN if the file cannot be read.
+double ax_document_time(const char* path);

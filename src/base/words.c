@@ -1,7 +1,9 @@
 #include "ax/base.h"
 
 #include <limits.h>
+#include <math.h>
 #include <string.h>
+#include <time.h>
 
 enum { LONGEST_WORD = 63 };
 
@@ -39,4 +41,13 @@ const char* ax_nearest_word(const char* word, int count, const char* const* cand
             fewest = changed, nearest = candidates[k];
     }
     return nearest;
+}
+
+void ax_day_words(double time, char words[16])
+{
+    time_t whole = (time_t)(fabs(time) < 1e12 ? time : 0);
+    struct tm parts;
+    bool known = fabs(time) < 1e12 && gmtime_r(&whole, &parts) && parts.tm_year > -1900 && parts.tm_year < 8100;
+    if (!known || strftime(words, 16, "%Y-%m-%d", &parts) == 0)
+        *words = '\0';
 }

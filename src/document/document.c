@@ -8,7 +8,9 @@
 #include "document/opening.h"
 #include "document/sql.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <sys/stat.h>
 
 // Everything of one save that can fail in SQLite.
 static int write_database(sqlite3* db, const ax_design* design)
@@ -97,4 +99,20 @@ ax_status ax_document_load_as(const ax_schema* schema, const char* path, ax_desi
 ax_status ax_document_load(const char* path, ax_design* design, ax_error* error)
 {
     return ax_document_load_as(&ax_document_schema, path, design, error);
+}
+
+double ax_document_time(const char* path)
+{
+    ax_database database;
+    struct stat file;
+    int result = SQLITE_OK;
+    if (stat(path, &file) != 0 || ax_database_open(&ax_document_schema, path, &database, NULL) != AX_OK)
+        return NAN;
+    double time = (double)file.st_mtime;
+    sqlite3_stmt* row = ax_sql_ask(database.view, "SELECT time FROM moment JOIN session ON number = now", "");
+    if (ax_sql_next(row, &result) && sqlite3_column_type(row, 0) != SQLITE_NULL)
+        time = sqlite3_column_double(row, 0);
+    sqlite3_finalize(row);
+    ax_database_close(&database);
+    return time;
 }

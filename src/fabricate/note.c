@@ -57,8 +57,8 @@ static int compose(const ax_work* w, double width, int sheet, char (*line)[160])
     const ax_cut_plan* p = w->plan;
     flow f = {.room = width, .line = line};
     char words[160];
-    if (*p->title) {
-        snprintf(words, sizeof words, "%.100s%s%.31s", p->title, *p->date ? ", " : "", p->date);
+    if (*p->title || *p->date) {
+        snprintf(words, sizeof words, "%.100s%s%.31s", p->title, *p->title && *p->date ? ", " : "", p->date);
         say(&f, words);
     }
     int panels = 0;

@@ -241,6 +241,12 @@ static ax_status export(desk* d, const job* j, json_t** result, ax_error* error)
     ax_cut_plan plan = {0};
     ax_profile profile;
     ax_fabricate_options making = ax_fabricate_options_default();
+    const ax_moment* moments;
+    int now;
+    char day[16] = "";
+    if (d->session && ax_session_history(d->session, &moments, &now))
+        ax_day_words(moments[now].time, day);
+    making.date = day;
     ax_export_options options = {.title = d->name, .fabricate = &making, .progress = &progress, .plan = &plan};
     ax_status status =
         message_unpack(&j->message, error, "{s:s, s?s, s?s, s?s, s?s, s?s, s?F, s?F, s?F}", "ending", &ending, "state",
