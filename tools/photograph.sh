@@ -34,9 +34,15 @@ case ${1:-} in
     while read -r name options; do
         [[ $name != \#* && -n $name ]] || continue
         (($# == 0)) || [[ " $* " == *" $name "* ]] || continue
-        "$auxshell" run "$root/examples/$name.json" -o "$scratch/$name.auxshell" >/dev/null
-        # shellcheck disable=SC2086 # options are words
-        shoot "$root/docs/pictures/photo-$name.jpg" "$scratch/$name.auxshell" $options
+        words=()
+        for word in "@$name" $options; do
+            if [[ $word == @* ]]; then # a design of the examples
+                "$auxshell" run "$root/examples/${word#@}.json" -o "$scratch/${word#@}.auxshell" >/dev/null
+                word=$scratch/${word#@}.auxshell
+            fi
+            words+=("$word")
+        done
+        shoot "$root/docs/pictures/photo-$name.jpg" "${words[@]}"
         printf 'Wrote docs/pictures/photo-%s.jpg\n' "$name"
     done <"$root/tools/photograph/shots.txt"
     ;;

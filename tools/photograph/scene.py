@@ -31,7 +31,7 @@ def arguments():
     parser.add_argument("--lens", type=float, default=50, help="focal length in mm on a 36 mm frame")
     parser.add_argument("--sun", default="-125,52", help="azimuth,elevation of the sun in degrees")
     parser.add_argument("--lift", type=float, default=0, help="metres of air under the lowest hinge; the frame stands on posts")
-    parser.add_argument("--posts", type=int, default=0, help="posts under the frame: one where it is highest, the others far apart")
+    parser.add_argument("--posts", type=int, default=0, help="posts under the first design's frame: one where it is highest, the others far apart")
     parser.add_argument("--people", type=int, default=0, help="figures of 1.72 m for scale")
     parser.add_argument("--balloon", action="store_true", help="what blows the shell up: a skin beneath it")
     parser.add_argument("--layers", nargs="*", default=[], help="more documents, drawn in the same place")
@@ -464,7 +464,7 @@ def main():
     for shell in shells:
         add_panels(shell, kind, material)
         add_pins(shell, kind, steel)
-        add_frame(shell, ground, options.posts, steel)
+        add_frame(shell, ground, options.posts if shell is shells[0] else 0, steel)
         if options.balloon:
             add_balloon(shell, 0.09 * shell.edge, plain("rubber", (0.42, 0.035, 0.03), 0.3))
     if options.reference:
