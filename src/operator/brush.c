@@ -49,8 +49,10 @@ static void place_point(const ax_stroke* stroke, int copy, int k, double out[2])
     out[1] = stroke->centre[1] + s * x + c * y;
 }
 
-// Distances of places from the stroke and its copies, where they are below what stands there.
-static void lower_distances(const ax_stroke* stroke, int count, const double (*places)[2], double* distance)
+// Distances of places from the stroke and its copies, where they are below what stands there. Those above `reach` need not be
+// found: a long stroke is one of hundreds of segments, few of them near a place.
+static void lower_distances(const ax_stroke* stroke, double reach, int count, const double (*places)[2],
+                            double* distance)
 {
     int points = stroke->points.count;
     for (int copy = 0; copy < copy_count(stroke); ++copy) {
@@ -58,7 +60,12 @@ static void lower_distances(const ax_stroke* stroke, int count, const double (*p
         place_point(stroke, copy, 0, a);
         for (int k = points > 1; k < points; ++k) {
             place_point(stroke, copy, k, b);
+            double lo[2] = {fmin(a[0], b[0]) - reach, fmin(a[1], b[1]) - reach};
+            double hi[2] = {fmax(a[0], b[0]) + reach, fmax(a[1], b[1]) + reach};
             for (int i = 0; i < count; ++i) {
+                const double* p = places[i];
+                if (p[0] < lo[0] || p[0] > hi[0] || p[1] < lo[1] || p[1] > hi[1])
+                    continue;
                 double d = ax_segment_distance2(places[i], a, b);
                 distance[i] = d < distance[i] ? d : distance[i];
             }
@@ -78,7 +85,7 @@ void ax_stroke_on_sheet(const ax_stroke* stroke, const ax_sheet* sheet, double r
 {
     for (int t = 0; t < sheet->count; ++t)
         distance[t] = INFINITY;
-    lower_distances(stroke, sheet->count, (const double(*)[2])sheet->centre, distance);
+    lower_distances(stroke, radius, sheet->count, (const double(*)[2])sheet->centre, distance);
     forget_beyond(radius, sheet->count, distance);
 }
 
@@ -268,7 +275,7 @@ void ax_stroke_on_deployed(const ax_stroke* stroke, const ax_sheet* sheet, const
     double *at = AX_NEW(double, s.vertex_count), *stretch = measure_stretch(&s);
     for (int v = 0; v < s.vertex_count; ++v)
         at[v] = INFINITY;
-    lower_distances(stroke, s.vertex_count, (const double(*)[2])s.sheet, at);
+    lower_distances(stroke, sheet->spacing, s.vertex_count, (const double(*)[2])s.sheet, at);
     // beside the stroke, where the map is nearly a similarity, lengths are those on the sheet times its stretch
     forget_beyond(sheet->spacing, s.vertex_count, at);
     for (int v = 0; v < s.vertex_count; ++v)
@@ -279,7 +286,7 @@ void ax_stroke_on_deployed(const ax_stroke* stroke, const ax_sheet* sheet, const
         distance[t] = (at[corner[0]] + at[corner[1]] + at[corner[2]]) / 3;
         // a mean of corners about the stroke is no distance from it: there the sheet knows better
         double near = INFINITY;
-        lower_distances(stroke, 1, (const double(*)[2]) & sheet->centre[t], &near);
+        lower_distances(stroke, sheet->spacing, 1, (const double(*)[2]) & sheet->centre[t], &near);
         if (near < sheet->spacing)
             distance[t] = near * (stretch[corner[0]] + stretch[corner[1]] + stretch[corner[2]]) / 3;
     }
