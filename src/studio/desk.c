@@ -13,8 +13,10 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { ITERATIONS = 10, SLICE = 2 }; // a visual update, unless the hand would wait for it longer than `patience`
-static const double patience = 0.02;
+// A visual update, unless the hand would wait for it longer than `patience`; after what the hand did, than `reaction`.
+enum { ITERATIONS = 10 };
+static const double patience = 0.02, reaction = 0.008;
+static const double quick_report = 0.01; // a longer one waits until the hand rests
 static const double frame_seconds = 1.0 / 60, rest_seconds = 1.0 / 15, report_seconds = 0.5, progress_seconds = 0.25;
 static const double rest_move = 1e-4; // of the sheet's spacing per update: nothing a screen shows moves any more
 enum { REST_UPDATES = 3 };
@@ -295,7 +297,8 @@ static const char* solver_word(const desk* d)
 static double show_moving(desk* d)
 {
     double now = ax_seconds(), move = publish(d, now - d->measured > rest_seconds);
-    if (now - d->reported > fmax(report_seconds, 10 * d->report_time)) {
+    bool at_hand = d->report_time > quick_report && now - d->hand_moved < report_seconds;
+    if (!at_hand && now - d->reported > fmax(report_seconds, 10 * d->report_time)) {
         measure(d);
         post_status(d, solver_word(d));
     }
@@ -438,12 +441,27 @@ static void start_moving(desk* d)
     d->rested = false;
 }
 
-static void advance(desk* d)
+// True when the hand has moved on, or something is to be done: what is solved now is not waited for.
+static bool outdated(desk* d)
+{
+    hub_lock(d->hub);
+    bool is = d->preview.step || d->grab.wanted || d->first || d->closing;
+    hub_unlock(d->hub);
+    return is;
+}
+
+// Iterates for about so many seconds, and shows what came of it. `first`: what the hand did last is shown even if it has moved on.
+static void advance(desk* d, double seconds, bool first)
 {
     double start = ax_seconds();
-    for (int done = 0; done < ITERATIONS && (!done || ax_seconds() - start < patience); done += SLICE)
-        ax_form_iterate(d->live, SLICE);
+    bool left = false;
+    for (int done = 0; done < ITERATIONS && !left && (!done || ax_seconds() - start < seconds); ++done) {
+        ax_form_iterate(d->live, 1);
+        left = !first && outdated(d);
+    }
     d->update_time = ax_seconds() - start;
+    if (left)
+        return;
     double move = show_moving(d);
     d->still = move < rest_move ? d->still + 1 : 0;
     if (d->still >= REST_UPDATES) {
@@ -483,7 +501,8 @@ static void show_preview(desk* d, preview p)
     d->hand_serial = p.serial;
     d->hand_of_serial = p.client;
     start_moving(d);
-    advance(d);
+    d->hand_moved = d->move_start;
+    advance(d, reaction, true);
 }
 
 static const char hand_name[] = "the hand";
@@ -518,7 +537,8 @@ static void follow_grab(desk* d, grab g)
     d->hand_serial = g.serial;
     d->hand_of_serial = g.client;
     start_moving(d);
-    advance(d);
+    d->hand_moved = d->move_start;
+    advance(d, reaction, true);
 }
 
 static void let_go(desk* d)
@@ -679,7 +699,7 @@ static bool work_once(desk* d)
                 continue;
             }
             hub_unlock(d->hub);
-            advance(d);
+            advance(d, patience, false);
             return true;
         }
         if (!d->rested) {

@@ -76,7 +76,7 @@ struct desk {
     double (*last_places)[3], (*last_flat)[2]; // as published last
     int last_count;
     ax_form_report report;
-    double published, measured, reported, report_time, update_time, settle_time, move_start;
+    double published, measured, reported, report_time, update_time, settle_time, move_start, hand_moved;
     variant* variants;
     int variant_count;
     const char* job_name;
