@@ -1,5 +1,4 @@
-"""The studio's page: what needs no browser; with AX_BROWSER=1 also a user's work in Chromium against the real server, which takes
-minutes where there is no graphics card. Both print TAP."""
+"""The studio's page: what needs no browser, then a user's work in Chromium against the real server. Both print TAP."""
 import os
 import subprocess
 import sys
@@ -12,9 +11,7 @@ PAGE = ROOT / "build/studio"  # tools/build_page.sh installs here what the page'
 def main():
     subprocess.run([ROOT / "tools/build_page.sh"], check=True, stdout=sys.stderr)
     environment = dict(os.environ, AUXSHELL=AUXSHELL, AUXSHELL_ROOT=str(ROOT), NO_COLOR="1")
-    commands = [["npx", "--no-install", "vitest", "run", "--reporter=tap-flat"]]
-    if os.environ.get("AX_BROWSER"):
-        commands.append(["node", "e2e/run.mjs", *sys.argv[1:]])
+    commands = [["npx", "--no-install", "vitest", "run", "--reporter=tap-flat"], ["node", "e2e/run.mjs", *sys.argv[1:]]]
     codes = [subprocess.run(command, cwd=PAGE, env=environment, stdin=subprocess.DEVNULL).returncode for command in commands]
     return max(codes)
 

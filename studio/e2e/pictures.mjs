@@ -12,12 +12,12 @@ mkdirSync(gallery, { recursive: true });
 const browser = await launch();
 let studio = await new Studio().start(".");
 try {
-    const card = await Hand.open(browser, studio.address, { viewport: { width: 1100, height: 760 }, deviceScaleFactor: 1 });
+    const card = await Hand.open(browser, studio.address, { viewport: { width: 1100, height: 760 }, deviceScaleFactor: 1, refines: true });
     await card.key("2");
     for (const { name } of await card.page.evaluate(() => auxshell.session.hello.value.examples)) {
         await card.page.evaluate((example) => auxshell.session.command("new", { example }), name);
         await card.rest();
-        await card.page.waitForTimeout(2500); // shadows are drawn at rest
+        await card.page.waitForFunction(() => auxshell.stage.value.atRest); // shadows are drawn then
         const bytes = await card.page.evaluate(async () => {
             const stage = auxshell.stage.value;
             const whole = await createImageBitmap(await stage.picture(false));
@@ -35,9 +35,9 @@ try {
     for (const colorScheme of ["light", "dark"]) {
         await studio.remove();
         studio = await new Studio().start(".");
-        const hand = await Hand.open(browser, studio.address, { colorScheme });
+        const hand = await Hand.open(browser, studio.address, { viewport: { width: 1600, height: 1000 }, colorScheme, refines: true });
         const shot = async (name) => {
-            await hand.page.waitForTimeout(2500);
+            await hand.page.waitForFunction(() => auxshell.stage.value.atRest, null, { timeout: 60000 });
             await hand.page.screenshot({ path: join(pictures, `studio-${name}.png`) });
         };
         await hand.key("b");

@@ -7,11 +7,11 @@ import { chromium } from "playwright-core";
 
 const command = process.env.AUXSHELL;
 
-/** Without a graphics card: WebGL in software. */
+/** As on a computer without a graphics card: WebGL in software, and the page put together without it. */
 export function launch() {
     return chromium.launch({
         executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-        args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-sandbox", "--disable-dev-shm-usage"],
+        args: ["--use-angle=swiftshader-webgl", "--enable-unsafe-swiftshader", "--no-sandbox", "--disable-dev-shm-usage"],
     });
 }
 
@@ -62,11 +62,14 @@ export class Hand {
         });
     }
 
+    /** `refines`: pictures at rest are whole. Without a graphics card they take longer than what is tried meanwhile. */
     static async open(browser, address, options = {}) {
-        const context = await browser.newContext({ viewport: { width: 1600, height: 1000 }, acceptDownloads: true, ...options });
+        const { refines = false, ...rest } = options;
+        const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...rest });
         await context.addInitScript(() => localStorage.setItem("auxshell.tour", "true"));
         const hand = new Hand(await context.newPage());
         await hand.page.goto(address);
+        if (!refines) await hand.page.waitForFunction(() => auxshell.stage.value && ((auxshell.stage.value.refines = false), true));
         await hand.ready();
         return hand;
     }

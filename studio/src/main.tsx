@@ -4,10 +4,11 @@ import "./styles/base.css";
 import "./styles/controls.css";
 import "./styles/layout.css";
 import { socketTo } from "./protocol/link";
+import * as latency from "./state/latency";
 import { motion } from "./state/motion";
 import * as selection from "./state/selection";
 import * as session from "./state/session";
-import { connect, currentShell, latency } from "./state/session";
+import { connect, currentShell } from "./state/session";
 import { stage } from "./state/view";
 import { App } from "./ui/app";
 import { listenToKeys } from "./ui/keyboard";
@@ -22,6 +23,6 @@ async function begin(): Promise<void> {
     } else connect(socketTo(location));
 }
 
-/** For measuring from outside: latencies from hand to screen in milliseconds, what drawing took, and what is shown. */
-Object.assign(window, { auxshell: { latency, stage, session, selection, motion, shell: currentShell, drawTime: () => stage.value?.drawTime ?? 0 } });
+/** For measuring from outside: the way from hand to screen, and what is shown. */
+Object.assign(window, { auxshell: { latency, stage, session, selection, motion, shell: currentShell } });
 void begin();

@@ -1,12 +1,13 @@
 // From state to scene: what the signals say is drawn. The scene itself reads no signal and writes none.
 import { effect } from "@preact/signals";
-import { connection, currentShell, latency, onShell, revision } from "../state/session";
+import { stateDrawn, stateSubmitted } from "../state/latency";
+import { connection, currentShell, holdStates, onShell, revision, settleRevision, takenStates } from "../state/session";
 import { darkTheme, reducedMotion } from "../state/settings";
 import { hovered, selected, selectedHinges, shown } from "../state/selection";
 import { fieldView, mode, scaleLimit } from "../state/view";
 import { motion } from "../state/motion";
 import { tool } from "../tools";
-import { drawHinges } from "../tools/select";
+import { drawHinges, drawPanel } from "../tools/select";
 import { radiusOf } from "./camera";
 import { dark, light } from "./look";
 import { mark } from "./panelmesh";
@@ -46,7 +47,7 @@ export function bindScene(stage: Stage): () => void {
             panels.setForces(bars, view.scale.map.table);
         });
     }));
-    // marks: what is beyond the limit, selected, hovered
+    // marks: what is beyond the limit, selected
     stops.push(effect(() => {
         const view = fieldView.value;
         const n = stage.shell?.linkage.panels ?? 0;
@@ -57,7 +58,6 @@ export function bindScene(stage: Stage): () => void {
             for (let t = 0; t < n; t++) if (view.values[t] > limit) marks[t] = mark.hatched;
         }
         for (const t of selected.value) if (t < n) marks[t] = mark.selected;
-        if (hovered.value >= 0 && hovered.value < n && tool.value.id !== "brush") marks[hovered.value] = mark.hovered;
         stage.each(({ panels }) => panels.setMarks(marks));
     }));
     stops.push(effect(() => {
@@ -67,11 +67,11 @@ export function bindScene(stage: Stage): () => void {
     stops.push(effect(() => {
         revision.value;
         const shell = currentShell();
-        supports.group.visible = mode.value === "analyse" || tool.value.id === "pin";
-        if (supports.group.visible && shell && stage.scenes) {
+        const visible = mode.value === "analyse" || tool.value.id === "pin";
+        if (visible || supports.group.visible) stage.invalidate();
+        supports.group.visible = visible;
+        if (visible && shell && stage.scenes)
             supports.show(shell, stage.scenes.space.panels.places, stage.scenes.space.panels.edge, radiusOf(stage.scenes.space.bounds), (darkTheme.value ? dark : light).ink);
-        }
-        stage.invalidate();
     }));
     stops.push(effect(() => {
         const place = shown.value;
@@ -82,25 +82,28 @@ export function bindScene(stage: Stage): () => void {
     }));
 
     const toolOverlay: Overlay = (context, s) => {
-        drawHinges(context, s, selectedHinges.value);
+        if (tool.peek().id !== "brush") drawPanel(context, s, hovered.peek());
+        drawHinges(context, s, selectedHinges.peek());
         tool.peek().overlay?.(context, s);
     };
     stage.overlays.add(toolOverlay);
     stops.push(effect(() => {
         tool.value;
+        hovered.value;
         selectedHinges.value;
-        stage.invalidate();
+        stage.invalidateOverlay();
     }));
 
-    stage.onPainted = () => {
+    stops.push(holdStates());
+    stage.onBefore = settleRevision;
+    stage.onSubmitted = () => {
         const serial = currentShell()?.serial ?? 0;
-        const now = performance.now();
-        for (const [sent, at] of latency.sent) {
-            if (sent > serial) break;
-            if (sent === serial) latency.samples.push(now - at);
-            latency.sent.delete(sent);
-        }
-        if (latency.samples.length > 2000) latency.samples.splice(0, 1000);
+        const acknowledge = takenStates();
+        stateSubmitted(serial);
+        return () => {
+            stateDrawn(serial);
+            acknowledge();
+        };
     };
     return () => {
         for (const stop of stops) stop();

@@ -7,13 +7,11 @@ import type { Look } from "./look";
 
 const bands = 9;
 const flatShadow = /* glsl */ `
-attribute vec3 bary; attribute vec3 cornerA; attribute vec3 cornerB; attribute vec3 cornerC;
 uniform vec3 towards; uniform float floorZ; uniform vec2 middle; uniform float halfSize;
 varying float vHeight;
 void main() {
-    vec3 p = bary.x * cornerA + bary.y * cornerB + bary.z * cornerC;
-    vHeight = p.z - floorZ;
-    vec2 q = p.xy - towards.xy / towards.z * vHeight;
+    vHeight = position.z - floorZ;
+    vec2 q = position.xy - towards.xy / towards.z * vHeight;
     gl_Position = vec4((q - middle) / halfSize, 0.0, 1.0);
 }`;
 const inBand = /* glsl */ `
@@ -90,7 +88,7 @@ export class GroundShadow {
         u.floorZ.value = floorZ;
         u.middle.value.set(cx, cy);
         u.halfSize.value = reach;
-        this.casterMesh.geometry = panels.flatGeometry();
+        this.casterMesh.geometry = panels.plainGeometry;
         const autoClear = renderer.autoClear;
         const before = renderer.getRenderTarget();
         renderer.autoClear = false;

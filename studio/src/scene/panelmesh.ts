@@ -1,13 +1,16 @@
 // Panels and joints of one state as two instanced meshes. Per frame 9 numbers per panel and 6 per joint go to the graphics card.
+// What moves on a slow renderer is drawn by a quick mesh instead.
 import * as THREE from "three";
 import { type Detail, drawn, makeTemplate } from "../panels/template";
 import type { Linkage } from "../panels/linkage";
 import { gather, medianEdge } from "../panels/linkage";
 import { hingeNormals, panelNormals } from "../panels/measures";
+import type { Lights } from "../panels/shade";
 import type { Look } from "./look";
+import { QuickMesh } from "./quickmesh";
 
 /** Marks of a panel, read by the fragment shader. */
-export const mark = { none: 0, hovered: 64, selected: 128, hatched: 192 };
+export const mark = { none: 0, selected: 128, hatched: 192 };
 
 const vertexHead = /* glsl */ `
 attribute vec3 bary; attribute vec3 level; attribute vec3 outward; attribute vec3 along;
@@ -64,7 +67,6 @@ diffuseColor.rgb = fromDisplay(shown) * shade;
 const finishChunk = /* glsl */ `
 if (vKind < 1.5) {
     float d = outlinePixels();
-    bool hovered = vMark > 0.2 && vMark < 0.4;
     bool selected = vMark > 0.4 && vMark < 0.6;
     bool hatched = vMark > 0.7;
     if (hatched) {
@@ -72,10 +74,10 @@ if (vKind < 1.5) {
         gl_FragColor.rgb = mix(gl_FragColor.rgb, hatchInk, smoothstep(0.5, 0.62, s) * (1.0 - smoothstep(0.88, 1.0, s)));
     }
     if (selected) gl_FragColor.rgb = mix(gl_FragColor.rgb, accent, 0.12);
-    float width = hovered ? 1.5 : selected ? 2.0 : 1.0;
+    float width = selected ? 2.0 : 1.0;
     float inside = 1.0 - smoothstep(width - 0.6, width + 0.2, d);
-    vec3 colour = hovered || selected ? accent : hatched ? hatchInk : lineColour;
-    gl_FragColor.rgb = mix(gl_FragColor.rgb, colour, inside * (hovered || selected ? 1.0 : lineAlpha));
+    vec3 colour = selected ? accent : hatched ? hatchInk : lineColour;
+    gl_FragColor.rgb = mix(gl_FragColor.rgb, colour, inside * (selected ? 1.0 : lineAlpha));
 }
 if (fade > 0.0) gl_FragColor.rgb = mix(gl_FragColor.rgb, vec3(dot(gl_FragColor.rgb, vec3(0.299, 0.587, 0.114))), fade);
 `;
@@ -106,6 +108,8 @@ export class PanelMesh {
     private readonly force: THREE.InstancedBufferAttribute;
     private readonly geometries = new Map<Detail, THREE.InstancedBufferGeometry>();
     private readonly mesh: THREE.Mesh<THREE.InstancedBufferGeometry, THREE.MeshStandardMaterial>;
+    private readonly quick: QuickMesh;
+    private lights: Lights = { lamps: [], sky: [0, 0, 0], ground: [0, 0, 0] };
     private readonly joints: THREE.Mesh<THREE.InstancedBufferGeometry, THREE.MeshStandardMaterial>;
     private readonly jointPlaces: THREE.InstancedBufferAttribute;
     private readonly jointUps: THREE.InstancedBufferAttribute;
@@ -115,6 +119,8 @@ export class PanelMesh {
     private readonly forceMap: THREE.DataTexture;
     private detail: Detail = "full";
     private jointsStale = true;
+    private normalsStale = true;
+    private quickStale = true;
     private fixedEdge = false;
 
     constructor(linkage: Linkage, look: Look) {
@@ -151,6 +157,8 @@ export class PanelMesh {
         this.mesh.frustumCulled = false;
         this.mesh.castShadow = this.mesh.receiveShadow = true;
 
+        this.quick = new QuickMesh(this.corners, this.uniforms);
+
         const cylinder = new THREE.CylinderGeometry(1, 1, 1, 16, 1).rotateX(Math.PI / 2);
         const joint = new THREE.InstancedBufferGeometry();
         joint.index = cylinder.index;
@@ -180,7 +188,7 @@ mat3 jointFrame() {
         this.joints = new THREE.Mesh(joint, metal);
         this.joints.frustumCulled = false;
         this.joints.receiveShadow = true;
-        this.group.add(this.mesh, this.joints);
+        this.group.add(this.mesh, this.joints, this.quick.mesh);
         this.setLook(look);
     }
 
@@ -192,6 +200,23 @@ mat3 jointFrame() {
         this.joints.material.color.setStyle(look.joint);
     }
     private lineAlpha = 0;
+
+    setLights(lights: Lights): void {
+        this.lights = lights;
+        this.quickStale = true;
+    }
+
+    /** The quick way, or as `setDetail` says. */
+    setQuick(quick: boolean): void {
+        this.quick.mesh.visible = quick;
+        this.mesh.visible = !quick;
+        if (!quick) return;
+        this.joints.visible = false;
+        if (!this.quickStale) return;
+        this.placeNormals();
+        this.quick.paint(this.lights, this.normals, this.tint.array as Uint8Array, this.marks.array as Uint8Array);
+        this.quickStale = false;
+    }
 
     /** Level of detail and the outline's strength for so many pixels per panel edge. */
     setDetail(detail: Detail, pixels: number): void {
@@ -211,7 +236,8 @@ mat3 jointFrame() {
         this.places.set(places);
         gather(this.linkage.triangles, this.places, this.corners);
         this.cornerBuffer.needsUpdate = true;
-        this.jointsStale = true;
+        this.quick.moved();
+        this.jointsStale = this.normalsStale = this.quickStale = true;
         if (!this.fixedEdge) {
             this.edge = medianEdge(this.linkage, this.places);
             this.fixedEdge = true;
@@ -223,21 +249,26 @@ mat3 jointFrame() {
     }
 
     private placeJoints(): void {
-        panelNormals(this.linkage.triangles, this.places, this.normals);
+        this.placeNormals();
         hingeNormals(this.linkage, this.normals, this.jointUps.array as Float32Array);
         this.jointPlaces.needsUpdate = this.jointUps.needsUpdate = true;
         this.jointsStale = false;
     }
 
+    private placeNormals(): void {
+        if (this.normalsStale) panelNormals(this.linkage.triangles, this.places, this.normals);
+        this.normalsStale = false;
+    }
+
     /** Four bytes per panel. */
     setTints(tints: Uint8Array): void {
         (this.tint.array as Uint8Array).set(tints);
-        this.tint.needsUpdate = true;
+        this.tint.needsUpdate = this.quickStale = true;
     }
 
     setMarks(marks: Uint8Array): void {
         (this.marks.array as Uint8Array).set(marks);
-        this.marks.needsUpdate = true;
+        this.marks.needsUpdate = this.quickStale = true;
     }
 
     /** Edge forces over their scale's end, 3 per panel, and the map they are drawn with; null draws none. */
@@ -256,15 +287,16 @@ mat3 jointFrame() {
         this.uniforms.fade.value = fade;
     }
 
-    /** Corners per instance, for meshes that draw the same panels in another way. */
-    flatGeometry(): THREE.InstancedBufferGeometry {
-        return this.geometry("flat");
+    /** The panels as one mesh of triangles. */
+    get plainGeometry(): THREE.BufferGeometry {
+        return this.quick.mesh.geometry;
     }
 
     dispose(): void {
         for (const g of this.geometries.values()) g.dispose();
         this.joints.geometry.dispose();
         this.mesh.material.dispose();
+        this.quick.dispose();
         this.mesh.customDepthMaterial?.dispose();
         this.joints.material.dispose();
         this.forceMap.dispose();

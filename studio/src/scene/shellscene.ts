@@ -8,6 +8,9 @@ import { type Look, keyFrom } from "./look";
 import { PanelMesh } from "./panelmesh";
 import { radiusOf } from "./camera";
 
+/** Towards key, fill and rim light. */
+const lamps = (planar: boolean) => [planar ? keyFrom.plane : keyFrom.space, [1, -1, 0.6], [0.4, 1.6, 0.5]] as const;
+
 export class ShellScene {
     readonly scene = new THREE.Scene();
     readonly panels: PanelMesh;
@@ -22,7 +25,7 @@ export class ShellScene {
 
     constructor(linkage: Linkage, look: Look, private readonly planar: boolean, frugal: boolean) {
         this.panels = new PanelMesh(linkage, look);
-        this.ground = new GroundShadow(planar ? keyFrom.plane : keyFrom.space, frugal ? 512 : 2048);
+        this.ground = new GroundShadow(planar ? keyFrom.plane : keyFrom.space, frugal ? 256 : 2048);
         this.key.castShadow = true;
         this.key.shadow.autoUpdate = false;
         this.key.shadow.radius = 3;
@@ -46,6 +49,13 @@ export class ShellScene {
         this.fill.intensity = look.fill;
         this.rim.intensity = look.rim;
         this.rim.visible = look.rim > 0;
+        const lit = (colour: THREE.Color, intensity: number) => colour.clone().multiplyScalar(intensity).toArray();
+        this.panels.setLights({
+            lamps: [this.key, this.fill, this.rim].map((light, k) => ({
+                from: new THREE.Vector3(...lamps(this.planar)[k]).normalize().toArray(), colour: lit(light.color, light.intensity),
+            })),
+            sky: lit(this.sky.color, look.hemisphere), ground: lit(this.sky.groundColor, look.hemisphere),
+        });
     }
 
     setPlaces(places: Float32Array): void {
@@ -59,9 +69,7 @@ export class ShellScene {
             light.target.position.set(centre[0], centre[1], centre[2]);
             light.position.set(...(from.map((v, k) => centre[k] + (v / length) * 3 * radius) as [number, number, number]));
         };
-        aim(this.key, this.planar ? keyFrom.plane : keyFrom.space);
-        aim(this.fill, [1, -1, 0.6]);
-        aim(this.rim, [0.4, 1.6, 0.5]);
+        [this.key, this.fill, this.rim].forEach((light, k) => aim(light, lamps(this.planar)[k]));
         const reach = 1.5 * radius;
         const camera = this.key.shadow.camera;
         Object.assign(camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.5 * radius, far: 6 * radius });

@@ -1,5 +1,10 @@
 // The views: one canvas under all of them, drawn only when something changed. Two scenes (flat, space) are shown by up to four
-// cameras. Everything over the shell (rings, handles, measures) is drawn on a plain canvas above by whoever registers for it.
+// cameras. Everything over the shell (rings, handles, measures) is drawn on a plain canvas above by whoever registers for it, and
+// can be drawn anew without the scenes.
+//
+// One picture at a time is with the renderer, and the next is of whatever is newest then: a slow renderer shows fewer pictures, not
+// older ones. If whole pictures take it too long, those of what moves are drawn the quick way, with fewer pixels if need be; once
+// nothing has changed for a moment a better picture follows, then the whole one.
 import * as THREE from "three";
 import type { Shell } from "../panels/shell";
 import { type Detail, detailFor } from "../panels/template";
@@ -32,6 +37,16 @@ export class View {
     }
 }
 
+/** A whole picture may take this long, one of what moves that long. Milliseconds. */
+const wholeLimit = 40;
+const quickGoal = { least: 14, most: 32 };
+const ratios = [1, 0.75, 0.5];
+/** What must not have changed for this long before a better picture is drawn, and before the whole one. */
+const rests = [250, 1500];
+
+/** How much goes into a picture: what moves on a slow renderer; its first picture at rest, without bevels and joints; everything. */
+type Effort = "quick" | "plain" | "whole";
+
 export type Overlay = (context: CanvasRenderingContext2D, stage: Stage) => void;
 export type Drawn = (view: View) => void;
 
@@ -48,24 +63,39 @@ export class Stage {
     scenes: Record<StateId, ShellScene> | null = null;
     readonly overlays = new Set<Overlay>();
     readonly drawn = new Set<Drawn>();
-    /** Called after a frame was drawn: latency is measured to here. */
-    onPainted: (() => void) | null = null;
+    /** A picture was handed to the graphics card; what it returns is called when the card has drawn it. */
+    onSubmitted: (() => () => void) | null = null;
+    /** Called before drawing: what is still to be told to the scenes. */
+    onBefore: (() => void) | null = null;
     animated = true;
+    /** A hand is at work: nothing better than what moves is drawn meanwhile. */
+    private held = false;
+    /** Whether a slow renderer draws better pictures at rest at all. */
+    refines = true;
     readonly renderer: THREE.WebGLRenderer;
+    readonly rendererName: string;
     /** No graphics card: smaller shadows. */
-    readonly frugal: boolean;
-    /** Milliseconds that drawing the last frame took, the graphics card's own work apart. */
-    drawTime = 0;
+    private readonly frugal: boolean;
 
     private readonly context2d: CanvasRenderingContext2D;
     private look: Look = light;
     private request = 0;
     private restTimer: ReturnType<typeof setTimeout> | undefined;
-    // without a graphics card both kinds of shadow wait until the shell rests
     private dirtyShadows = false;
     private dirtyGround = false;
-    /** Places came in less than a moment ago. */
-    private moving = false;
+    private dirtyPlaces = false;
+    /** Places of a motion's state that are shown instead of the shell's. */
+    private override: Float32Array | undefined;
+    private stale = false;
+    private staleOverlay = false;
+    /** The renderer is at a picture. */
+    private flying = false;
+    /** When something was last to be drawn anew. */
+    private changed = 0;
+    private drawnWith: Effort = "whole";
+    /** Milliseconds that the last two whole pictures took: one alone may have had shaders to compile. */
+    private wholeTimes: [number, number];
+    private ratio = 0;
     private width = 0;
     private height = 0;
 
@@ -78,19 +108,33 @@ export class Stage {
         this.renderer.autoClear = false;
         const info = this.renderer.getContext().getExtension("WEBGL_debug_renderer_info");
         const name = info ? String(this.renderer.getContext().getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+        this.rendererName = name;
         this.frugal = /swiftshader|llvmpipe|software/i.test(name);
+        this.wholeTimes = this.frugal ? [Infinity, Infinity] : [0, 0];
         this.context2d = overlay.getContext("2d")!;
     }
 
     resize(width: number, height: number): void {
         this.width = width;
         this.height = height;
-        const ratio = Math.min(2, window.devicePixelRatio || 1);
-        this.renderer.setPixelRatio(ratio);
+        this.renderer.setPixelRatio(this.screenRatio);
         this.renderer.setSize(width, height, false);
-        this.overlay.width = Math.round(width * ratio);
-        this.overlay.height = Math.round(height * ratio);
+        this.overlay.width = Math.round(width * this.screenRatio);
+        this.overlay.height = Math.round(height * this.screenRatio);
         this.invalidate();
+    }
+
+    private get screenRatio(): number {
+        return Math.min(2, window.devicePixelRatio || 1);
+    }
+
+    private get slow(): boolean {
+        return Math.min(...this.wholeTimes) > wholeLimit;
+    }
+
+    /** Everything that was to be drawn has been, as well as it can be. */
+    get atRest(): boolean {
+        return !this.stale && !this.flying && !this.dirtyGround && (this.drawnWith === "whole" || !this.refines);
     }
 
     /** Places of the views within the canvas, and which are shown. */
@@ -124,7 +168,8 @@ export class Stage {
                 space: new ShellScene(shell.linkage, this.look, false, this.frugal),
             };
             this.scenes = scenes;
-            this.setPlaces();
+            this.override = undefined;
+            this.placeShell();
             this.skins = {
                 sheet: new Skin(shell.linkage, shell.sheet),
                 flat: new Skin(shell.linkage, scenes.flat.panels.places),
@@ -140,16 +185,21 @@ export class Stage {
         this.invalidate();
     }
 
-    /** The shell's places changed. `space` overrides the state in space: a frame of a motion. */
+    /** The shell's places changed. `space` overrides the state in space: a frame of a motion. Only what is drawn is computed with. */
     setPlaces(space?: Float32Array): void {
+        this.override = space;
+        this.dirtyPlaces = true;
+        this.invalidate();
+    }
+
+    private placeShell(): void {
+        this.dirtyPlaces = false;
         if (!this.shell || !this.scenes) return;
         this.scenes.flat.setPlaces(this.shell.flat);
-        this.scenes.space.setPlaces(space ?? this.shell.simulated ?? this.shell.deployed);
+        this.scenes.space.setPlaces(this.override ?? this.shell.simulated ?? this.shell.deployed);
         this.skins?.flat.touch();
         this.skins?.space.touch();
-        this.moving = true;
         this.dirtyShadows = this.dirtyGround = true;
-        this.invalidate();
     }
 
     each(change: (scene: ShellScene) => void): void {
@@ -157,8 +207,27 @@ export class Stage {
         this.invalidate();
     }
 
+    /** Something is to be drawn anew. */
     invalidate(): void {
-        if (!this.request) this.request = requestAnimationFrame((now) => this.draw(now));
+        this.stale = true;
+        this.changed = performance.now();
+        this.schedule();
+    }
+
+    /** Only what lies over the scenes is. */
+    invalidateOverlay(): void {
+        this.staleOverlay = true;
+        this.schedule();
+    }
+
+    /** A hand begins or ends its work on the views. */
+    hold(held: boolean): void {
+        if (this.held && !held) this.invalidate();
+        this.held = held;
+    }
+
+    private schedule(): void {
+        if (!this.request) this.request = requestAnimationFrame((now) => this.tick(now));
     }
 
     /** Moves the camera so that the shell fills the view. */
@@ -224,65 +293,122 @@ export class Stage {
         return this.look;
     }
 
-    private draw(now: number): void {
+    private tick(now: number): void {
         this.request = 0;
-        const began = performance.now();
-        const { renderer } = this;
-        const scenes = this.scenes;
+        if (this.dirtyPlaces && !this.flying) this.placeShell();
+        this.onBefore?.();
+        if (this.stale && !this.flying) {
+            clearTimeout(this.restTimer);
+            const waits = this.slow && (this.held || performance.now() - this.changed < rests[0]);
+            const moving = this.draw(now, waits ? "quick" : this.slow && performance.now() - this.changed < rests[1] ? "plain" : "whole");
+            this.fly(this.onSubmitted?.());
+            if (moving) this.invalidate();
+        }
+        if (this.staleOverlay) this.drawOverlay();
+    }
+
+    /** True while a camera is on its way. */
+    private draw(now: number, effort: Effort): boolean {
+        this.stale = false;
+        this.staleOverlay = true;
+        this.drawnWith = effort;
+        if (this.dirtyPlaces) this.placeShell();
+        const { renderer, scenes } = this;
+        const quick = effort === "quick";
+        const ratio = this.screenRatio * (quick ? ratios[this.ratio] : 1);
+        if (renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
         renderer.setScissorTest(false);
         renderer.setRenderTarget(null);
         renderer.setClearColor(0x000000, 0);
         renderer.clear();
-        let moving = false;
-        if (scenes) {
-            const shownStates = new Set(this.shown.map((id) => this.views[id].state));
-            if (this.dirtyShadows && !(this.frugal && this.dirtyGround)) {
-                for (const state of shownStates) scenes[state].castShadows();
-                this.dirtyShadows = false;
-            }
-            if (this.dirtyGround) this.groundAfterRest();
-            renderer.setScissorTest(true);
-            for (const id of this.shown) {
-                const view = this.views[id];
-                const { rect } = view;
-                if (rect.width < 2 || rect.height < 2) continue;
-                const scene = scenes[view.state];
-                moving = view.orbit.update(now, radiusOf(scene.bounds)) || moving;
-                const pixels = view.orbit.pixels(scene.panels.edge, rect.height);
-                view.detail = detailFor(pixels, view.detail);
-                // drawn in software, a moving shell goes without bevels and joints
-                scene.panels.setDetail(this.frugal && this.moving && view.detail === "full" ? "prism" : view.detail, pixels);
-                renderer.setViewport(rect.x, this.height - rect.y - rect.height, rect.width, rect.height);
-                renderer.setScissor(rect.x, this.height - rect.y - rect.height, rect.width, rect.height);
-                renderer.render(scene.scene, view.orbit.camera);
-                for (const listener of this.drawn) listener(view);
-            }
+        if (!scenes) return false;
+        if (this.dirtyShadows && !quick) {
+            for (const state of new Set(this.shown.map((id) => this.views[id].state))) scenes[state].castShadows();
+            this.dirtyShadows = false;
         }
+        let moving = false;
+        renderer.setScissorTest(true);
+        for (const id of this.shown) {
+            const view = this.views[id];
+            const { rect } = view;
+            if (rect.width < 2 || rect.height < 2) continue;
+            const scene = scenes[view.state];
+            moving = view.orbit.update(now, radiusOf(scene.bounds)) || moving;
+            const pixels = view.orbit.pixels(scene.panels.edge, rect.height);
+            view.detail = detailFor(pixels, view.detail);
+            scene.panels.setDetail(effort === "plain" && view.detail === "full" ? "prism" : view.detail, pixels);
+            scene.panels.setQuick(quick);
+            renderer.setViewport(rect.x, this.height - rect.y - rect.height, rect.width, rect.height);
+            renderer.setScissor(rect.x, this.height - rect.y - rect.height, rect.width, rect.height);
+            renderer.render(scene.scene, view.orbit.camera);
+            for (const listener of this.drawn) listener(view);
+        }
+        return moving;
+    }
+
+    private drawOverlay(): void {
+        this.staleOverlay = false;
         const ratio = this.overlay.width / Math.max(1, this.width);
         this.context2d.setTransform(ratio, 0, 0, ratio, 0, 0);
         this.context2d.clearRect(0, 0, this.width, this.height);
         for (const overlay of this.overlays) overlay(this.context2d, this);
-        this.drawTime = performance.now() - began;
-        this.onPainted?.();
-        if (moving) this.invalidate();
     }
 
-    /** The soft ground shadow is drawn within 100 ms of rest; while the shell moves its last picture stays. */
-    private groundAfterRest(): void {
-        clearTimeout(this.restTimer);
-        this.dirtyGround = false;
+    /** Calls `done` when the renderer has drawn all that it was given so far, and learns from how long that took. */
+    private fly(done?: () => void): void {
+        const gl = this.renderer.getContext() as WebGL2RenderingContext;
+        const began = performance.now();
+        const effort = this.drawnWith;
+        const land = () => {
+            this.flying = false;
+            const took = performance.now() - began;
+            if (effort === "whole") this.wholeTimes = [this.wholeTimes[1], took];
+            else if (effort === "quick" && took > quickGoal.most) this.ratio = Math.min(ratios.length - 1, this.ratio + 1);
+            else if (effort === "quick" && took < quickGoal.least) this.ratio = Math.max(0, this.ratio - 1);
+            done?.();
+            if (this.stale) this.schedule();
+            else this.refineAfterRest();
+        };
+        this.flying = true;
+        const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        gl.flush();
+        const look = () => {
+            if (fence && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost()) {
+                setTimeout(look, 1);
+                return;
+            }
+            gl.deleteSync(fence);
+            land();
+        };
+        setTimeout(look, 1);
+    }
+
+    /** What was left out while something moved is drawn soon after nothing does: better pictures, and the soft ground shadow. */
+    private refineAfterRest(): void {
+        if (this.drawnWith === "whole" ? !this.dirtyGround : !this.refines) return;
+        const due = this.changed + (!this.slow ? 80 : rests[this.drawnWith === "quick" ? 0 : 1]);
         this.restTimer = setTimeout(() => {
-            this.moving = false;
-            if (!this.scenes) return;
-            for (const scene of Object.values(this.scenes)) scene.drawGround(this.renderer);
-            this.dirtyShadows ||= this.frugal;
-            this.invalidate();
-        }, 80);
+            if (this.held || this.flying || this.stale) return;
+            if (this.dirtyGround && (this.drawnWith !== "quick" || !this.slow)) this.drawGrounds();
+            this.stale = true;
+            this.schedule();
+        }, Math.max(20, due - performance.now()));
+    }
+
+    private drawGrounds(): void {
+        this.dirtyGround = false;
+        for (const scene of Object.values(this.scenes ?? {})) scene.drawGround(this.renderer);
+    }
+
+    /** Pixels of a whole picture. */
+    get pictureSize(): { width: number; height: number } {
+        return { width: Math.floor(this.width * this.screenRatio), height: Math.floor(this.height * this.screenRatio) };
     }
 
     /** The views as they are, on their ground. */
     paintOn(context: CanvasRenderingContext2D, ground = true): void {
-        this.draw(performance.now());
+        if (this.dirtyGround) this.drawGrounds();
+        this.draw(performance.now(), "whole");
         const ratio = this.canvas.width / this.width;
         context.clearRect(0, 0, this.canvas.width, this.canvas.height);
         if (ground)
@@ -299,9 +425,7 @@ export class Stage {
     }
 
     async picture(ground = true): Promise<Blob> {
-        const out = document.createElement("canvas");
-        out.width = this.canvas.width;
-        out.height = this.canvas.height;
+        const out = Object.assign(document.createElement("canvas"), this.pictureSize);
         this.paintOn(out.getContext("2d")!, ground);
         return new Promise((resolve, reject) => out.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The picture could not be made."))), ground ? "image/png" : "image/webp", 0.9));
     }

@@ -137,7 +137,7 @@ export const commands: Command[] = [
         run: () => {
             toolId.value = t.id;
             mode.value = mode.value === "variants" ? "design" : mode.value;
-            pointer.value?.stage.invalidate();
+            pointer.value?.stage.invalidateOverlay();
         },
     })),
 ];

@@ -7,6 +7,8 @@ import type {
     StatusEvent, VariantsEvent,
 } from "../protocol/types";
 import { medianEdge } from "../panels/linkage";
+import { Newest } from "./newest";
+import { gestureEnded, previewLeft, stateArrived } from "./latency";
 import { Shell } from "../panels/shell";
 
 export type Connection = "connecting" | "open" | "lost";
@@ -59,7 +61,7 @@ export const checks = computed<Check[]>(() => report.value?.checks ?? []);
 export const readOnly = computed(() => documentState.value?.read_only ?? null);
 
 export function connect(to: Connect): void {
-    link = new Link(to, { event: receive, frame: receiveFrame, opened: () => undefined, lost: () => (connection.value = "lost") });
+    link = new Link(to, { event: receive, frame: receiveBinary, opened: () => undefined, lost: () => (connection.value = "lost") });
     link.start();
 }
 
@@ -77,15 +79,18 @@ function remember(id: string): void {
     if (location.hash !== url) history.replaceState(null, "", url);
 }
 
+/** States that may be on their way to the screen. */
+const ahead = 1;
+
 async function join(event: Hello): Promise<void> {
     const known = documentState.value?.id ?? rememberedDocument();
     try {
-        await link!.ask("join", known ? { document: known } : {});
+        await link!.ask("join", known ? { document: known, ahead } : { ahead });
     } catch (error) {
         if (!known) throw error;
         // the server was started anew; what was no file then is among the recovered
         if (event.recovered.some((r) => r.name === known)) await link!.ask("open", { recovered: known });
-        else await link!.ask("join", {});
+        else await link!.ask("join", { ahead });
     }
     connection.value = "open";
 }
@@ -94,6 +99,7 @@ function receive(event: ServerEvent): void {
     switch (event.event) {
         case "hello":
             hello.value = event;
+            unseen = 0;
             closedMessage.value = null;
             join(event).catch((error: unknown) => showProblem(error, "join"));
             break;
@@ -135,16 +141,54 @@ function showProblem(error: unknown, about: string): void {
     if (p.word !== "cancelled") problem.value = { error: p, about };
 }
 
+// The server sends a state when the last one is on screen, and then the newest: none waits here, and none is drawn late. Where
+// nothing draws them (no views, a hidden tab) they are acknowledged as they come.
+let unseen = 0;
+let held = false;
+const acknowledge = (count: number) => {
+    for (let k = Math.min(count, unseen); k > 0; k--, unseen--) link?.tell("seen");
+};
+
+/** From now on states wait to be drawn, until the function that is returned is called. */
+export function holdStates(): () => void {
+    held = true;
+    return () => {
+        held = false;
+        acknowledge(unseen);
+    };
+}
+
+/** The states that came so far are in a picture; to be called when it is on screen. */
+export function takenStates(): () => void {
+    const count = unseen;
+    return () => acknowledge(count);
+}
+if (typeof document !== "undefined") document.addEventListener("visibilitychange", () => acknowledge(unseen));
+
 let pendingRevision = false;
-function receiveFrame(frame: Frame): void {
+/** Tells everyone that the shell has changed, if it has. */
+export function settleRevision(): void {
+    if (!pendingRevision) return;
+    pendingRevision = false;
+    revision.value++;
+}
+
+function receiveBinary(frame: Frame): void {
     if (frame.kind !== kinds.state) {
         for (const listener of frameListeners) listener(frame, frame.kind === kinds.variant ? announcedVariant : null);
         return;
     }
+    unseen++;
+    if (!receiveState(frame) || !held || document.hidden) acknowledge(unseen);
+}
+
+/** False when it is of a linkage that was replaced meanwhile. */
+function receiveState(frame: Frame): boolean {
     let linkage = false;
+    stateArrived(frame.serial);
     // documents count their linkages alike: what makes a new one is that its triangles come
     if (!shell || frame.topology !== shell.topology || frame.sections.has(section.triangles)) {
-        if (!announced || announced.topology !== frame.topology || !frame.sections.has(section.triangles)) return; // of a linkage that was replaced meanwhile
+        if (!announced || announced.topology !== frame.topology || !frame.sections.has(section.triangles)) return false;
         shell = new Shell(announced, frame);
         linkage = true;
         batch(() => {
@@ -155,11 +199,9 @@ function receiveFrame(frame: Frame): void {
     for (const listener of shellListeners) listener(shell, { linkage, frame });
     if (!pendingRevision) {
         pendingRevision = true;
-        requestAnimationFrame(() => {
-            pendingRevision = false;
-            revision.value++;
-        });
+        requestAnimationFrame(settleRevision);
     }
+    return true;
 }
 
 /** A command whose failure is shown; resolves to null then. */
@@ -182,19 +224,22 @@ export function nextCommandId(): number {
     return link?.nextId ?? 0;
 }
 
-/** Sent when a preview leaves: the page measures from here to the frame that shows it. */
-export const latency: { sent: Map<number, number>; samples: number[] } = { sent: new Map(), samples: [] };
-
-export function preview(operator: OperatorCall | null): number {
-    if (!link) return 0;
+const previews = new Newest<OperatorCall | null>((operator) => {
+    if (!link) return;
     const serial = link.nextSerial();
-    latency.sent.set(serial, performance.now());
+    if (operator) previewLeft(serial);
     link.tell("preview", { serial, operator });
-    return serial;
-}
+});
+const grabs = new Newest<{ hinge: number; to: [number, number, number] }>((g) => link?.tell("grab", { ...g, serial: link.nextSerial() }));
 
-export function grab(hinge: number, to: [number, number, number]): void {
-    if (link) link.tell("grab", { hinge, to, serial: link.nextSerial() });
+/** What the operator would do is shown at once; null: it is not to be done. */
+export const preview = (operator: OperatorCall | null) => previews.put(operator);
+/** Holds a hinge at a place of the document's frame while the solver runs. */
+export const grab = (hinge: number, to: [number, number, number]) => grabs.put({ hinge, to });
+
+export function release(): void {
+    grabs.drop();
+    link?.tell("release");
 }
 
 export function tell(name: string, parameters: Record<string, unknown> = {}): void {
@@ -202,5 +247,7 @@ export function tell(name: string, parameters: Record<string, unknown> = {}): vo
 }
 
 export async function apply(operator: OperatorCall): Promise<boolean> {
+    previews.drop(); // the step holds all of the gesture
+    gestureEnded();
     return (await command("apply", { operator })) !== null;
 }

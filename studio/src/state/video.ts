@@ -17,9 +17,7 @@ export async function record(what: "turntable" | "deployment"): Promise<void> {
         return;
     }
     if (what === "deployment" && !(await computeMotion())) return;
-    const canvas = document.createElement("canvas");
-    canvas.width = views.canvas.width;
-    canvas.height = views.canvas.height;
+    const canvas = Object.assign(document.createElement("canvas"), views.pictureSize);
     const context = canvas.getContext("2d")!;
     const parts: Blob[] = [];
     const recorder = new MediaRecorder(canvas.captureStream(30), { mimeType: "video/webm", videoBitsPerSecond: 12e6 });

@@ -88,7 +88,7 @@ export const brush: Tool = {
             if (operator) preview(operator);
             restTimer = setTimeout(() => (resting.value = true), 400);
         } else if (!dragging) held.value = heldBy(hit);
-        hit.stage.invalidate();
+        hit.stage.invalidateOverlay();
     },
     up() {
         if (!drawing) return;
@@ -105,7 +105,7 @@ export const brush: Tool = {
         preview(null);
     },
     leave() {
-        pointer.value?.stage.invalidate();
+        pointer.value?.stage.invalidateOverlay();
     },
     key(event) {
         const hit = pointer.value;
@@ -116,7 +116,7 @@ export const brush: Tool = {
         }
         if (event.key === "[" || event.key === "]") {
             setArgument("paint", "radius", Number((brushRadius() * (event.key === "]" ? 1.1 : 1 / 1.1)).toPrecision(3)));
-            hit?.stage.invalidate();
+            hit?.stage.invalidateOverlay();
             return true;
         }
         if (event.key === "Escape" && sizing) {

@@ -1,7 +1,7 @@
 // Grabbing a hinge while the solver runs: it follows the pointer in the plane that faces the view.
 import { signal } from "@preact/signals";
 import * as THREE from "three";
-import { currentShell, grab, tell } from "../state/session";
+import { currentShell, grab, release } from "../state/session";
 import { type Hit, type Tool } from "./tool";
 
 export const grabbed = signal<{ hinge: number; to: THREE.Vector3 } | null>(null);
@@ -35,18 +35,18 @@ export const dynamics: Tool = {
         if (!to) return;
         grabbed.value = { hinge: grabbed.value.hinge, to };
         send();
-        hit.stage.invalidate();
+        hit.stage.invalidateOverlay();
     },
     up(hit) {
         grabbed.value = null;
         plane = null;
-        tell("release");
-        hit.stage.invalidate();
+        release();
+        hit.stage.invalidateOverlay();
     },
     cancel() {
         grabbed.value = null;
         plane = null;
-        tell("release");
+        release();
     },
     overlay(context, stage) {
         const g = grabbed.value;

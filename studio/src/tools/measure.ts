@@ -48,13 +48,13 @@ export const measure: Tool = {
         if (!hit.on || !skin) return;
         const end = { on: hit.on, hinge: skin.hingeAt(hit.on), state: hit.view.state };
         ends.value = ends.value.length === 1 && ends.value[0].state === end.state ? [...ends.value, end] : [end];
-        hit.stage.invalidate();
+        hit.stage.invalidateOverlay();
     },
     cancel: () => (ends.value = []),
     key(event) {
         if (event.key !== "Escape") return false;
         ends.value = [];
-        pointer.value?.stage.invalidate();
+        pointer.value?.stage.invalidateOverlay();
         return true;
     },
     overlay(context, stage) {

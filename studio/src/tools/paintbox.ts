@@ -78,12 +78,12 @@ export const gradient: Tool = {
         if (ends) ends.hit = hit;
         const operator = gradientCall();
         if (operator) preview(operator);
-        hit.stage.invalidate();
+        hit.stage.invalidateOverlay();
     },
     up(hit) {
         const operator = gradientCall();
         from = to = ends = null;
-        hit.stage.invalidate();
+        hit.stage.invalidateOverlay();
         if (operator) void apply(operator);
     },
     cancel() {

@@ -132,7 +132,7 @@ export const rim: Tool = {
         if (k < 0) {
             // a double click on the curve puts a handle there
             if (hit.double && hit.on && rimPoints().length) insertNear(hit);
-            hit.stage.invalidate();
+            hit.stage.invalidateOverlay();
             return false;
         }
         const from = local(rimPoints()[k]);
@@ -151,13 +151,13 @@ export const rim: Tool = {
         points[activePoint.value] = [tidy(place.x + o[0]), tidy(place.y + o[1]), tidy(place.z + o[2])];
         setRimPoints(points);
         previewRim();
-        hit.stage.invalidate();
+        hit.stage.invalidateOverlay();
     },
     up(hit) {
         if (!dragging) return;
         dragging = null;
         snapped = null;
-        hit.stage.invalidate();
+        hit.stage.invalidateOverlay();
         const operator = rimCall();
         if (operator) void apply(operator);
     },
@@ -175,7 +175,7 @@ export const rim: Tool = {
         if ((event.key === "Delete" || event.key === "Backspace") && activePoint.value >= 0 && rimPoints().length > 3) {
             setRimPoints(rimPoints().filter((_, i) => i !== activePoint.value));
             activePoint.value = -1;
-            pointer.value?.stage.invalidate();
+            pointer.value?.stage.invalidateOverlay();
             return true;
         }
         return false;

@@ -1,6 +1,8 @@
 // Selecting: a click, a lasso, a kagome line, a curve between two hinges.
 import { signal } from "@preact/signals";
 import * as THREE from "three";
+import { drawn } from "../panels/template";
+import type { Stage } from "../scene/stage";
 import { insidePolygon, kagomeLine, shortestWay } from "../panels/lines";
 import { clearSelection, hoveredHinge, select as choose, selectHinges, selected, selectedHinges } from "../state/selection";
 import { currentShell } from "../state/session";
@@ -48,13 +50,13 @@ export const selectTool: Tool = {
         if (!dragging || selectKind.value === "line" || selectKind.value === "curve") return;
         const last = loop.at(-1);
         if (last && Math.hypot(last.x - hit.x, last.y - hit.y) > 3) loop.push({ x: hit.x, y: hit.y });
-        hit.stage.invalidate();
+        hit.stage.invalidateOverlay();
     },
     up(hit) {
         const shell = currentShell();
         const drawn = loop;
         loop = [];
-        hit.stage.invalidate();
+        hit.stage.invalidateOverlay();
         if (!shell) return;
         if (selectKind.value === "line") {
             selectHinges(lineAt(hit));
@@ -107,8 +109,37 @@ export const selectTool: Tool = {
     },
 };
 
+/** The outline of a panel in every view, as it is drawn: its top. */
+export function drawPanel(context: CanvasRenderingContext2D, stage: Stage, panel: number): void {
+    if (!stage.skins || !stage.scenes || panel < 0 || panel >= stage.skins.flat.linkage.panels) return;
+    const up = new THREE.Vector3();
+    context.save();
+    context.strokeStyle = stage.theme.accent;
+    context.lineJoin = "round";
+    context.lineWidth = 1.5;
+    for (const id of stage.shown) {
+        const { state, rect } = stage.views[id];
+        const skin = stage.skins[state];
+        skin.normal(panel, up).multiplyScalar((drawn.thickness / 2) * stage.scenes[state].panels.edge);
+        context.beginPath();
+        context.rect(rect.x, rect.y, rect.width, rect.height);
+        context.save();
+        context.clip();
+        context.beginPath();
+        for (let k = 0; k < 3; k++) {
+            const p = stage.project(stage.views[id], new THREE.Vector3().fromArray(skin.places, 3 * skin.linkage.triangles[3 * panel + k]).add(up));
+            if (k) context.lineTo(p.x, p.y);
+            else context.moveTo(p.x, p.y);
+        }
+        context.closePath();
+        context.stroke();
+        context.restore();
+    }
+    context.restore();
+}
+
 /** A sequence of hinges in every view, as a line through them. */
-export function drawHinges(context: CanvasRenderingContext2D, stage: Hit["stage"], hinges: readonly number[], alpha = 1): void {
+export function drawHinges(context: CanvasRenderingContext2D, stage: Stage, hinges: readonly number[], alpha = 1): void {
     if (!stage.skins || hinges.length === 0) return;
     context.save();
     context.globalAlpha = alpha;

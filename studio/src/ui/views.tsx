@@ -12,6 +12,7 @@ import { division, layout, narrow, navigation } from "../state/settings";
 import { hovered, hoveredHinge } from "../state/selection";
 import { currentShell, documentState, revision, topology } from "../state/session";
 import { dialog, mode, stage as stageSignal } from "../state/view";
+import { handMoved } from "../state/latency";
 import { motion } from "../state/motion";
 import { tool } from "../tools";
 import { type Hit, pointer } from "../tools/tool";
@@ -310,6 +311,7 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
         const planar = view.orbit.pose.projection === "parallel" && view.orbit.preset !== null;
         const kind = gestureOf(navigation.value, event, view.state === "flat" || planar);
         place.setPointerCapture(event.pointerId);
+        stage.hold(true);
         if (kind) gesture = { kind, view, ...at, id: event.pointerId };
         else if (event.button === 0) {
             const double = event.timeStamp - lastDown < 350;
@@ -353,24 +355,27 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
             return;
         }
         // browsers gather what moved between two frames; a stroke wants every place
+        handMoved(event.timeStamp);
         const events = gesture && event.getCoalescedEvents ? event.getCoalescedEvents() : [event];
         for (const e of events.length ? events.slice(-6) : [event]) {
             const hit = hitOf(e, view);
             hover(hit);
             tool.value.move?.(hit, gesture !== null);
         }
-        stage.invalidate();
+        stage.invalidateOverlay();
     };
     const up = (event: PointerEvent) => {
         touches.delete(event.pointerId);
         const ended = gesture;
         gesture = null;
+        stage.hold(false);
         if (ended?.kind === "tool") tool.value.up?.(hitOf(event, ended.view));
     };
     const lost = (event: PointerEvent) => {
         touches.delete(event.pointerId);
         if (gesture?.kind === "tool") tool.value.cancel?.();
         gesture = null;
+        stage.hold(false);
     };
     const leave = () => {
         if (gesture) return;
@@ -378,7 +383,7 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
         hovered.value = -1;
         hoveredHinge.value = -1;
         tool.value.leave?.();
-        stage.invalidate();
+        stage.invalidateOverlay();
     };
     const wheel = (event: WheelEvent) => {
         if (onControl(event) && (event.target as HTMLElement).closest("select")) return;

@@ -1,0 +1,57 @@
+// The way from the hand to the screen, each part apart. Times are milliseconds of performance.now().
+
+export interface Sample {
+    /** Of the newest pointer event in the preview, as the browser stamped it. */
+    moved: number;
+    /** The preview left. */
+    sent: number;
+    /** The first state that holds it came in, */
+    arrived: number;
+    /** was handed to the graphics card, */
+    submitted: number;
+    /** and drawn. */
+    drawn: number;
+}
+
+const most = 2000;
+const under: Map<number, Partial<Sample>> = new Map();
+let hand = 0;
+
+/** What was measured, for whoever reads it from outside; empty it before a measurement. */
+export const samples: Sample[] = [];
+
+/** Movements that are not on screen yet. */
+export const pending = () => under.size;
+
+/** A pointer moved, at the event's time stamp. */
+export function handMoved(at: number): void {
+    hand = at;
+}
+
+export function previewLeft(serial: number): void {
+    const sent = performance.now();
+    under.set(serial, { moved: Math.min(hand, sent), sent });
+}
+
+/** What was not on screen by then never will be. */
+export function gestureEnded(): void {
+    under.clear();
+}
+
+/** What held this preview or a later one got so far. */
+function reached(serial: number, part: "arrived" | "submitted" | "drawn"): void {
+    const now = performance.now();
+    for (const [key, sample] of under) {
+        if (key > serial) break;
+        if (part !== "arrived" && sample[part === "drawn" ? "submitted" : "arrived"] === undefined) continue;
+        sample[part] ??= now;
+        if (part !== "drawn") continue;
+        samples.push(sample as Sample);
+        under.delete(key);
+    }
+    if (samples.length > most) samples.splice(0, most / 2);
+}
+
+export const stateArrived = (serial: number) => reached(serial, "arrived");
+export const stateSubmitted = (serial: number) => reached(serial, "submitted");
+export const stateDrawn = (serial: number) => reached(serial, "drawn");

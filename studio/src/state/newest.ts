@@ -1,0 +1,30 @@
+// A mouse may speak a thousand times a second. Of what one pointer event brought only the last word leaves, and no more of them than
+// one in so many milliseconds, which is less often than the server may be spoken to.
+const every = 8;
+
+export class Newest<T> {
+    private next: { value: T } | null = null;
+    private sent = -Infinity;
+    private timer: ReturnType<typeof setTimeout> | undefined;
+
+    constructor(private readonly send: (value: T) => void) {}
+
+    put(value: T): void {
+        const waits = this.next !== null;
+        this.next = { value };
+        if (!waits) this.timer = setTimeout(() => this.leave(), Math.max(0, this.sent + every - performance.now()));
+    }
+
+    /** What has not left yet need not leave any more. */
+    drop(): void {
+        clearTimeout(this.timer);
+        this.next = null;
+    }
+
+    private leave(): void {
+        const { value } = this.next!;
+        this.next = null;
+        this.sent = performance.now();
+        this.send(value);
+    }
+}
