@@ -3,6 +3,7 @@
 #include "ax/assembly.h"
 
 #include "base/vec.h"
+#include "linkage/lattice.h"
 #include "support/sample.h"
 #include "support/test.h"
 
@@ -233,6 +234,63 @@ static void supports_that_leave_a_gap_make_an_open_curve(void** state)
     ax_free(rim);
 }
 
+// Whether a hinge lies on the kagome line between two strips of panels, in one of two directions.
+static bool is_on_line(const int (*panels)[3], const int held[2], int direction, int strip)
+{
+    if (held[1] < 0)
+        return false;
+    const int *p = panels[held[0]], *q = panels[held[1]];
+    int a = p[1 - direction] + p[2], b = q[1 - direction] + q[2];
+    return a != b && (a < b ? a : b) == strip;
+}
+
+static void supports_across_the_shell_are_arches(void** state)
+{
+    (void)state;
+    const ax_linkage* l = &sample.linkage;
+    ax_design design = sample;
+    int(*held)[2] = ax_linkage_hinge_triangles(l), strip[2], counts[2] = {0, 0}, supports = 0;
+    design.supports = ax_copy(sample.supports, (size_t)l->hinge_count, 1);
+    int top = 0; // two lines through the strips of the panel in the middle, which cross
+    for (int h = 0; h < l->hinge_count; ++h)
+        top = sample.deployed[h][2] > sample.deployed[top][2] ? h : top;
+    for (int k = 0; k < 2; ++k)
+        strip[k] = l->panels[held[top][0]][1 - k] + l->panels[held[top][0]][2];
+    for (int h = 0; h < l->hinge_count; ++h) {
+        for (int k = 0; k < 2; ++k)
+            if (is_on_line((const int(*)[3])l->panels, held[h], k, strip[k]))
+                design.supports[h] = 1, ++counts[k];
+        supports += design.supports[h];
+    }
+    ax_support_frame f = ax_frame_of(&design);
+    assert_int_equal(f.support_count, supports);
+    assert_int_equal(f.curve_count, 3);
+    assert_false(f.curves[0].arch);
+    for (int k = 1; k < 3; ++k) {
+        const ax_frame_curve* c = &f.curves[k];
+        assert_true(c->arch && !c->closed);
+        int direction = 0, inside = 0;
+        const int* second = held[f.points[c->first + 1].hinge];
+        if (!is_on_line((const int(*)[3])l->panels, second, 0, strip[0]))
+            direction = 1;
+        for (int i = 0; i < c->count; ++i) {
+            int h = f.points[c->first + i].hinge;
+            assert_true(l->on_rim[h] ? i == 0 || i + 1 == c->count
+                                     : is_on_line((const int(*)[3])l->panels, held[h], direction, strip[direction]));
+            inside += !l->on_rim[h];
+        }
+        assert_int_equal(inside, counts[direction]);
+        assert_true(l->on_rim[f.points[c->first].hinge] && l->on_rim[f.points[c->first + c->count - 1].hinge]);
+        if (c->planar) { // stands as it is drawn
+            assert_near(c->axes[0][2], 0, 1e-12);
+            assert_true(c->axes[1][2] > 0.7);
+        }
+    }
+    ax_frame_free(&f);
+    ax_free(design.supports);
+    ax_free(held);
+}
+
 static void a_frame_in_space_is_unrolled(void** state)
 {
     (void)state;
@@ -282,6 +340,7 @@ int main(void)
         cmocka_unit_test(pieces_are_joined_at_their_seams),
         cmocka_unit_test(the_rim_of_a_cap_is_a_circle),
         cmocka_unit_test(supports_that_leave_a_gap_make_an_open_curve),
+        cmocka_unit_test(supports_across_the_shell_are_arches),
         cmocka_unit_test(a_frame_in_space_is_unrolled),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -16,7 +16,7 @@ trap 'rm -rf "$scratch"' EXIT
 "$bin/auxshell" design "$root/examples/surfaces/spherical_cap.obj" -o "$scratch/dome.auxshell" --triangles 100 --units m --load gravity >/dev/null
 "$bin/auxshell" export "$scratch/dome.auxshell" -o "$root/examples/grasshopper/dome.json" >/dev/null
 "$bin/auxshell" design "$root/examples/surfaces/kidney_dome.obj" -o "$scratch/kidney.auxshell" --triangles 400 --units m >/dev/null
-"$bin/auxshell" export "$scratch/kidney.auxshell" -o "$scratch/kidney.plan.pdf" --joint ring --material plywood-3 >/dev/null
+"$bin/auxshell" export "$scratch/kidney.auxshell" -o "$scratch/kidney.plan.pdf" --date none --joint ring --material plywood-3 >/dev/null
 for page in 2:layout 4:steps 7:frame; do
   pdftoppm -r 60 -png -singlefile -f "${page%:*}" "$scratch/kidney.plan.pdf" "$root/docs/pictures/plan-${page#*:}"
 done
@@ -27,6 +27,8 @@ done
 "$bin/auxshell" shade "$scratch/pavilion.auxshell" "$scratch/pavilion-middle.auxshell" "$scratch/pavilion-inner.auxshell" \
   --place 47.38,8.54 --date 2026-06-21 --zone 2 --hours 10,17 --want 0,2,1.2,0.5 --want -2.3,2.5,0.8,0.42 --want 2.3,2,0.8,0.33 \
   --arrange --shift 0.8 --png "$root/docs/pictures/shade-pavilion.png" >/dev/null
+"$bin/auxshell" export "$scratch/hybrid-shell.auxshell" -o "$scratch/hybrid-shell.plan.pdf" --date none >/dev/null
+pdftoppm -r 60 -png -singlefile -f 13 "$scratch/hybrid-shell.plan.pdf" "$root/docs/pictures/plan-arch"
 # Pictures of the gallery as WebP: a tenth of the size.
 "$bin/auxshell" gallery --page "$root/docs/gallery.md" >/dev/null
 for picture in "$root"/docs/pictures/gallery/*.png; do

@@ -45,18 +45,20 @@ typedef struct ax_frame_point {
     bool slides;
 } ax_frame_point;
 
-// Supports points[first .. first + count) that follow each other round the rim; single ones are curves of one point. Where the rim
-// goes on unsupported for more than three times the usual distance, a curve ends.
+// Supports points[first .. first + count) that follow each other round the rim, or over the shell as an arch; single ones are curves
+// of one point. Where the rim goes on unsupported for more than three times the usual distance, a curve ends. An arch is what panels join one
+// after the other, going on straight, with the supports of the rim where it ends.
 typedef struct ax_frame_curve {
     int first, count;
-    bool closed;
+    bool closed, arch;
     double length, plan; // of its chords; of the smooth curve, seen from above
     bool planar;         // within AX_FRAME_TOLERANCE, as `circle` is
     double off_plane,
         off_circle; // largest distance from the plane and from the circle that fit best; NaN: too few points
     double origin[3],
-        axes[3][3]; // of the plane: axes[0] near the document's x (or y), axes[2] its normal, not downwards
-    bool circle;    // planar and of four or more points
+        axes[3]
+            [3]; // of the plane: axes[2] its normal, not downwards; axes[0] near the document's x, or level if the plane stands
+    bool circle; // planar and of four or more points
     double centre[3], radius;
 } ax_frame_curve;
 
@@ -64,13 +66,14 @@ typedef struct ax_frame_curve {
 
 typedef struct ax_support_frame {
     int point_count, curve_count;
+    int support_count; // points where curves meet stand in each of them
     ax_frame_point* points;
     ax_frame_curve* curves;
 } ax_support_frame;
 
 void ax_frame_free(ax_support_frame* frame); // also resets to an empty frame; NULL allowed
 
-// The supports in their deployed places, in order round the rim; those inside the shell come last. Empty without supports.
+// The supports in their deployed places, in order round the rim; then the arches. Empty without supports.
 ax_support_frame ax_frame_of(const ax_design* design);
 
 // The place at `t` in [0, 1] of the way from point k of a curve to the next: smooth through all points, but for corners of more

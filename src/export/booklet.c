@@ -308,23 +308,24 @@ static void say_load(listing* l)
 static void say_frame(listing* l)
 {
     const ax_support_frame* f = &l->b->frame;
+    const ax_slide* slides = l->b->design->slides;
     int sliding = 0;
-    for (int k = 0; k < f->point_count; ++k)
-        sliding += f->points[k].slides;
+    for (int h = 0; h < l->b->design->linkage.hinge_count && slides; ++h)
+        sliding += l->b->design->supports[h] && slides[h].freedom != AX_HELD_FAST;
     if (sliding)
-        say(l, "Supports", "%d, of which %d slide", f->point_count, sliding);
+        say(l, "Supports", "%d, of which %d slide", f->support_count, sliding);
     else
-        say(l, "Supports", "%d", f->point_count);
-    for (int k = 0, told = 0; k < f->curve_count && told < 4; ++k) {
+        say(l, "Supports", "%d", f->support_count);
+    for (int k = 0, told = 0; k < f->curve_count && told < 6; ++k) {
         const ax_frame_curve* c = &f->curves[k];
         if (c->count < 2)
             continue;
         ++told;
         if (c->circle)
-            say(l, "Frame", "circle of radius %.1f mm, %d supports", c->radius, c->count);
+            say(l, c->arch ? "Arch" : "Frame", "circle of radius %.1f mm, %d supports", c->radius, c->count);
         else
-            say(l, "Frame", "%s curve, %.3f m, %d supports", c->planar ? "plane" : "spatial", c->length / 1000,
-                c->count);
+            say(l, c->arch ? "Arch" : "Frame", "%s curve, %.3f m, %d supports", c->planar ? "plane" : "spatial",
+                c->length / 1000, c->count);
     }
 }
 

@@ -124,7 +124,7 @@ static void draw(ax_booklet* b, const ax_frame_curve* c, bool unrolled, const ax
     ax_box inner = {box->x + 8, box->y + 14, box->width - 16, box->height - 22};
     d.scale = ax_booklet_scale(&inner, hi[0] - lo[0], hi[1] - lo[1], scale);
     d.shift[0] = inner.x + inner.width / 2 - d.scale * (lo[0] + hi[0]) / 2;
-    d.shift[1] = inner.y + inner.height / 2 + d.scale * (-lo[1] - hi[1]) / -2;
+    d.shift[1] = inner.y + inner.height / 2 - d.scale * (lo[1] + hi[1]) / 2;
     snprintf(text, sizeof text, "%s, %s", words, scale);
     ax_booklet_text(b, box->x, box->y + 4, 3.2, AX_LEFT, text);
     draw_curve(&d);
@@ -150,7 +150,7 @@ static void draw_page(ax_booklet* b, int index, const char* section)
 {
     const ax_frame_curve* c = &b->frame.curves[index];
     char heading[64], line[256];
-    snprintf(heading, sizeof heading, "Frame %d: %s", index + 1,
+    snprintf(heading, sizeof heading, "%s %d: %s", c->arch ? "Arch" : "Frame", index + 1,
              c->circle      ? "a circle"
              : c->count < 3 ? "two supports"
              : c->planar    ? "a curve in a plane"

@@ -3,6 +3,7 @@
 
 #include "base/vec.h"
 #include "constraint/eigen3.h"
+#include "fabricate/arches.h"
 #include "fabricate/plan.h"
 #include "fabricate/stroke_font.h"
 #include "linkage/lattice.h"
@@ -14,6 +15,7 @@
 enum { PIECES = 8 };               // of the smooth curve between two supports, when it is drawn
 static const double far_apart = 3; // times the usual number of rim hinges from one support to the next
 static const double corner = 30 * AX_PI / 180;
+static const double upright = 0.7; // vertical part of the normal, below which a plane stands
 
 void ax_frame_free(ax_support_frame* frame)
 {
@@ -69,8 +71,8 @@ static void fit_plane(const ax_support_frame* f, ax_frame_curve* c)
     if (n[2] < 0 || (n[2] == 0 && n[1] > 0)) // seen from above, or from the front
         for (int d = 0; d < 3; ++d)
             n[d] = -n[d];
-    if (fabs(n[0]) > 0.9)
-        x[0] = 0, x[1] = 1;
+    if (n[2] < upright) // a plane that stands is drawn standing
+        x[0] = -n[1], x[1] = n[0];
     double out = ax_dot3(x, n), length;
     for (int d = 0; d < 3; ++d)
         x[d] -= out * n[d];
@@ -197,10 +199,11 @@ static void add_curve(ax_support_frame* f, int first, bool closed)
 ax_support_frame ax_frame_of(const ax_design* design)
 {
     const ax_linkage* l = &design->linkage;
-    ax_support_frame f = {.points = AX_NEW0(ax_frame_point, l->hinge_count),
-                          .curves = AX_NEW0(ax_frame_curve, l->hinge_count)};
     int *rim = AX_NEW(int, l->hinge_count), *at = AX_NEW(int, l->hinge_count), count = 0;
     int(*held)[2] = ax_linkage_hinge_triangles(l);
+    ax_arches arches = ax_arches_find(design, (const int(*)[2])held);
+    ax_support_frame f = {.points = AX_NEW0(ax_frame_point, l->hinge_count + arches.hinge_count),
+                          .curves = AX_NEW0(ax_frame_curve, l->hinge_count + arches.count)};
     int around = ax_linkage_rim(l, rim);
     for (int k = 0; k < around; ++k)
         if (design->supports[rim[k]])
@@ -218,17 +221,22 @@ ax_support_frame ax_frame_of(const ax_design* design)
             first = f.point_count;
         }
     }
+    for (int k = 0; k < arches.count; ++k) {
+        int first = f.point_count;
+        for (int i = arches.start[k]; i < arches.start[k + 1]; ++i)
+            add_point(&f, design, held[arches.hinges[i]], arches.hinges[i]);
+        add_curve(&f, first, arches.closed[k]);
+        f.curves[f.curve_count - 1].arch = true;
+    }
     for (int h = 0; h < l->hinge_count; ++h)
-        if (design->supports[h] && !l->on_rim[h]) {
-            add_point(&f, design, held[h], h);
-            add_curve(&f, f.point_count - 1, false);
-        }
+        f.support_count += design->supports[h];
     for (int k = 0; k < f.curve_count; ++k)
         measure_curve(&f, &f.curves[k]);
     ax_free(rim);
     ax_free(at);
     ax_free(ends);
     ax_free(held);
+    ax_arches_free(&arches);
     return f;
 }
 
@@ -391,7 +399,7 @@ static void put_aspect(template* t, const ax_frame_curve* c, aspect a, int index
     static const char* const words[] = {"in its plane", "from above, with heights",
                                         "unrolled: height over length from above"};
     char text[128];
-    snprintf(text, sizeof text, "frame %d %s", index + 1, words[a]);
+    snprintf(text, sizeof text, "%s %d %s", c->arch ? "arch" : "frame", index + 1, words[a]);
     ax_plan_item(&t->b, AX_NOTE, -1, "name-%d.%d", index + 1, (int)a);
     ax_plan_text(&t->b, text, letters, &(ax_motion){1, 0, *x, margin + letters / 2});
     *x = fmax(t->hi[0], *x + letters * ax_stroke_width(text)) + between;

@@ -19,7 +19,8 @@ static ax_status write_frame(const ax_design* design, ax_state state, const ax_e
 const ax_export_type ax_export_frame_dxf = {
     .ending = ".frame.dxf",
     .name = "Frame template, DXF",
-    .doc = "The curve of the supports at true size in mm, in its plane; else from above with heights, and unrolled.",
+    .doc = "The curves of the supports, rim and arches, at true size in mm, each in its plane; else from above with "
+           "heights, and unrolled.",
     .default_state = AX_STATE_DEPLOYED,
     .states = {[AX_STATE_DEFAULT] = true, [AX_STATE_DEPLOYED] = true},
     .write = write_frame,
