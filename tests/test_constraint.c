@@ -1446,6 +1446,62 @@ static void splines_are_smooth_and_straight_where_their_points_are(void** state)
     ax_curve_free(curve);
 }
 
+static void rounded_corners_are_arcs(void** state)
+{
+    (void)state;
+    const double square[5][3] = {{0, 0, 1}, {4, 0, 1}, {4, 4, 1}, {4, 4, 1}, {0, 4, 1}};
+    for (int closed = 0; closed < 2; ++closed)
+        for (int k = 0; k < 3; ++k) {
+            double radius = (double[]){0.5, 2, 9}[k], fits = fmin(radius, 2), p[3]; // half a side has room for 2
+            ax_curve* curve = ax_curve_rounded(square, 5, closed, radius);
+            ax_curve_range range = ax_curve_extent(curve);
+            assert_true(range.smooth);
+            double corners = closed ? 4 : 2, sides = closed ? 16 : 12;
+            assert_near(ax_curve_length(curve, range.to), sides - corners * fits * (2 - AX_PI / 2), 4e-3 * corners);
+            for (int i = 0; i <= 200; ++i) { // about the centre of the corner at (4, 0)
+                ax_curve_point(curve, range.to * i / 200, p);
+                assert_near(p[2], 1, 1e-12);
+                if (p[0] > 4 - fits && p[1] < fits)
+                    assert_near(hypot(p[0] - 4 + fits, p[1] - fits), fits, 1e-5 * fits);
+            }
+            check_curve(curve, range.to, 6, 18);
+            ax_curve_free(curve);
+        }
+    // nothing to round
+    ax_curve* curve = ax_curve_rounded(square, 2, false, 1);
+    assert_near(ax_curve_length(curve, 1), 4, 0);
+    ax_curve_free(curve);
+}
+
+static void lengths_along_curves_and_back(void** state)
+{
+    (void)state;
+    const double bent[5][3] = {{0, 0, 0}, {0.01, 0, 0}, {0.02, 0.01, 1}, {4, 1, 2}, {0, 3, 1}}, zero[3] = {0, 0, 0};
+    const double a[3] = {5, 0, 0}, b[3] = {0, 1, 0};
+    ax_curve* curves[] = {ax_curve_polyline(bent, 5, false),     ax_curve_polyline(bent, 5, true),
+                          ax_curve_spline(bent, 5, false),       ax_curve_spline(bent, 5, true),
+                          ax_curve_rounded(bent, 5, true, 0.01), ax_curve_circle(zero, b, 3),
+                          ax_curve_ellipse(zero, a, b),          ax_curve_line(zero, a)};
+    for (size_t c = 0; c < sizeof curves / sizeof *curves; ++c) {
+        ax_curve_range range = ax_curve_extent(curves[c]);
+        double end = isfinite(range.to) ? range.to : 7, whole = ax_curve_length(curves[c], end), walked = 0, p[3], q[3];
+        enum { STEPS = 20000 };
+        ax_curve_point(curves[c], 0, p);
+        for (int k = 0; k < STEPS; ++k) {
+            double t = end * k / STEPS;
+            assert_near(ax_curve_at_length(curves[c], ax_curve_length(curves[c], t)), t, 1e-9 * end);
+            ax_curve_point(curves[c], end * (k + 1) / STEPS, q);
+            walked += ax_distance3(p, q);
+            memcpy(p, q, sizeof p);
+        }
+        assert_near(whole, walked, 2e-3 * walked);
+        if (range.closed)
+            assert_near(ax_curve_at_length(curves[c], 0.3 * whole - whole), ax_curve_at_length(curves[c], 0.3 * whole),
+                        1e-9 * end);
+        ax_curve_free(curves[c]);
+    }
+}
+
 static void coincident_control_points_count_once(void** state)
 {
     (void)state;
@@ -1503,6 +1559,8 @@ int main(void)
         cmocka_unit_test(nearest_points_on_lines_and_polylines_are_nearest),
         cmocka_unit_test(nearest_points_on_splines_are_nearest),
         cmocka_unit_test(splines_are_smooth_and_straight_where_their_points_are),
+        cmocka_unit_test(rounded_corners_are_arcs),
+        cmocka_unit_test(lengths_along_curves_and_back),
         cmocka_unit_test(coincident_control_points_count_once),
     };
     return cmocka_run_group_tests(tests, make_curve, free_curve);

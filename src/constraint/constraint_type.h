@@ -48,7 +48,7 @@ typedef struct ax_parameter {
 typedef struct ax_place {
     void (*nearest)(const void* geometry, const double x[3], double out[3]);
     const void* geometry; // borrowed
-    // Curves only: the same with the parameter, the point at a parameter, and where a closed curve begins again (0: open).
+    // Curves only: the same with the length along it, the point at a length, and the length at which a closed curve begins again (0: open).
     double (*parameter)(const void* geometry, const double x[3], double out[3]);
     void (*point)(const void* geometry, double t, double out[3]);
     double period;

@@ -11,7 +11,7 @@
 
 #include <assert.h>
 
-enum { DEEPEST = 48 };
+enum { DEEPEST = 48, SPLINE_CUTS = 16, ELLIPSE_CUTS = 256 };
 
 typedef enum curve_kind { LINE, ELLIPSE, POLYLINE, SPLINE } curve_kind;
 
@@ -31,6 +31,8 @@ struct ax_curve {
     bounds* boxes; // of a range of pieces, then of its first half, then of its second: 2 count - 1
     int count;
     bool closed;
+    double* along; // length from the start to every cut; between them it is taken to be linear in t
+    int cuts;      // equal ones in t over the whole curve; none on a line
 };
 
 static ax_curve* make(curve_kind kind)
@@ -43,6 +45,19 @@ static ax_curve* make(curve_kind kind)
 static void copy3(const double from[3], double to[3])
 {
     to[0] = from[0], to[1] = from[1], to[2] = from[2];
+}
+
+static void measure_along(ax_curve* curve, int cuts)
+{
+    double end = ax_curve_extent(curve).to, last[3], next[3];
+    curve->cuts = cuts;
+    curve->along = AX_NEW0(double, cuts + 1);
+    ax_curve_point(curve, 0, last);
+    for (int k = 1; k <= cuts; ++k) {
+        ax_curve_point(curve, end * k / cuts, next);
+        curve->along[k] = curve->along[k - 1] + ax_distance3(last, next);
+        copy3(next, last);
+    }
 }
 
 // out = a + t (b - a)
@@ -69,6 +84,7 @@ ax_curve* ax_curve_ellipse(const double centre[3], const double a[3], const doub
     copy3(centre, curve->point);
     ax_frame(a, b, curve->u, curve->v, r);
     curve->a = r[0], curve->b = r[2];
+    measure_along(curve, ELLIPSE_CUTS);
     return curve;
 }
 
@@ -82,6 +98,7 @@ ax_curve* ax_curve_circle(const double centre[3], const double normal[3], double
     ax_curve* curve = make(ELLIPSE);
     copy3(centre, curve->point), copy3(u, curve->u), copy3(v, curve->v);
     curve->a = curve->b = radius;
+    measure_along(curve, ELLIPSE_CUTS);
     return curve;
 }
 
@@ -123,20 +140,37 @@ static void tangent(const double a[3], const double b[3], const double c[3], dou
         out[i] = span * ((b[i] - a[i]) / s - (c[i] - a[i]) / (s + t) + (c[i] - b[i]) / t);
 }
 
+// A curve of pieces that are given, owned by it from now on.
+static ax_curve* of_pieces(curve_kind kind, bezier* pieces, int count, bool closed)
+{
+    ax_curve* curve = make(kind);
+    curve->pieces = pieces, curve->count = count, curve->closed = closed;
+    curve->boxes = AX_NEW(bounds, 2 * count - 1);
+    make_boxes(curve, 0, count, 0);
+    measure_along(curve, count * (kind == POLYLINE ? 1 : SPLINE_CUTS));
+    return curve;
+}
+
+static bezier straight(const double from[3], const double to[3])
+{
+    bezier piece;
+    copy3(from, piece.b[0]), copy3(to, piece.b[3]);
+    between(from, to, 1.0 / 3, piece.b[1]), between(from, to, 2.0 / 3, piece.b[2]);
+    return piece;
+}
+
 static ax_curve* make_pieces(curve_kind kind, const double (*points)[3], int count, bool closed)
 {
     assert(count >= 1);
     double(*p)[3] = ax_alloc((size_t)count, sizeof *p);
     int n = distinct(points, count, closed, p);
-    ax_curve* curve = make(kind);
-    curve->closed = closed = closed && n > 1;
-    curve->count = n == 1 ? 1 : n - !closed;
-    curve->pieces = AX_NEW0(bezier, curve->count);
-    for (int k = 0; k < curve->count; ++k) {
+    closed = closed && n > 1;
+    int pieces = n == 1 ? 1 : n - !closed;
+    bezier* piece = AX_NEW(bezier, pieces);
+    for (int k = 0; k < pieces; ++k) {
         const double *b = p[k], *c = p[(k + 1) % n];
-        double(*at)[3] = curve->pieces[k].b;
-        copy3(b, at[0]), copy3(c, at[3]);
-        between(b, c, 1.0 / 3, at[1]), between(b, c, 2.0 / 3, at[2]);
+        piece[k] = straight(b, c);
+        double(*at)[3] = piece[k].b;
         if (kind == SPLINE && n > 2) {
             // an open end has no neighbour beyond: the chord itself would make a kink of the curvature, its mirror
             // image does not
@@ -154,9 +188,7 @@ static ax_curve* make_pieces(curve_kind kind, const double (*points)[3], int cou
         }
     }
     ax_free(p);
-    curve->boxes = AX_NEW(bounds, 2 * curve->count - 1);
-    make_boxes(curve, 0, curve->count, 0);
-    return curve;
+    return of_pieces(kind, piece, pieces, closed);
 }
 
 ax_curve* ax_curve_polyline(const double (*points)[3], int count, bool closed)
@@ -169,11 +201,75 @@ ax_curve* ax_curve_spline(const double (*points)[3], int count, bool closed)
     return make_pieces(SPLINE, points, count, closed);
 }
 
+// The arc that rounds the corner b between a and c as two cubic pieces; false where there is nothing to round. `room`: along each side.
+static bool round_corner(const double a[3], const double b[3], const double c[3], double radius, double room,
+                         bezier arc[2])
+{
+    double u[3], v[3], middle[3], reach = 0;
+    ax_sub3(a, b, u), ax_sub3(c, b, v);
+    double lu = ax_norm3(u), lv = ax_norm3(v), cosine = -ax_dot3(u, v) / (lu * lv); // of the turn
+    if (!(cosine < 1 - 1e-12) || cosine < -1 + 1e-12)
+        return false;
+    double turn = acos(cosine), half = 0.5 * turn, cut = fmin(radius * tan(half), room);
+    radius = cut / tan(half);
+    for (int i = 0; i < 3; ++i) {
+        u[i] = cut * u[i] / lu, v[i] = cut * v[i] / lv;
+        middle[i] = u[i] + v[i];
+    }
+    reach = ax_norm3(middle); // from the corner, the arc's middle lies radius / cos(half) - radius along
+    double handle = 4.0 / 3 * tan(turn / 8) * radius, along[3], length;
+    ax_sub3(v, u, along);
+    length = ax_norm3(along);
+    for (int i = 0; i < 3; ++i) {
+        double top = b[i] + middle[i] / reach * (radius / cos(half) - radius), slope = handle * along[i] / length;
+        arc[0].b[0][i] = b[i] + u[i];
+        arc[0].b[1][i] = b[i] + u[i] * (1 - handle / cut);
+        arc[0].b[2][i] = top - slope;
+        arc[0].b[3][i] = arc[1].b[0][i] = top;
+        arc[1].b[1][i] = top + slope;
+        arc[1].b[2][i] = b[i] + v[i] * (1 - handle / cut);
+        arc[1].b[3][i] = b[i] + v[i];
+    }
+    return true;
+}
+
+ax_curve* ax_curve_rounded(const double (*points)[3], int count, bool closed, double radius)
+{
+    double(*p)[3] = ax_alloc((size_t)count, sizeof *p);
+    int n = distinct(points, count, closed, p), pieces = 0;
+    if (!(radius > 0) || n < 3) {
+        ax_free(p);
+        return ax_curve_polyline(points, count, closed);
+    }
+    bezier *piece = AX_NEW(bezier, 3 * n), arc[2];
+    double at[3], first[3];
+    copy3(p[0], at);
+    for (int k = closed ? 0 : 1; k < n - !closed; ++k) { // the side up to each corner, and its arc
+        const double *a = p[(k + n - 1) % n], *b = p[k], *c = p[(k + 1) % n];
+        double before = ax_distance3(a, b), after = ax_distance3(b, c), *end = p[k];
+        bool round = round_corner(a, b, c, radius, 0.5 * fmin(before, after), arc);
+        double* start = round ? arc[0].b[0] : end;
+        if (closed && k == 0)
+            copy3(start, first); // its side comes last
+        else if (ax_distance3(at, start) > 1e-9 * before)
+            piece[pieces++] = straight(at, start);
+        copy3(round ? arc[1].b[3] : end, at);
+        for (int i = 0; round && i < 2; ++i)
+            piece[pieces++] = arc[i];
+    }
+    double* last = closed ? first : p[n - 1];
+    if (ax_distance3(at, last) > 1e-9 * ax_distance3(p[n - 1], p[closed ? 0 : n - 2]))
+        piece[pieces++] = straight(at, last);
+    ax_free(p);
+    return of_pieces(SPLINE, piece, pieces, closed);
+}
+
 void ax_curve_free(ax_curve* curve)
 {
     if (curve) {
         ax_free(curve->pieces);
         ax_free(curve->boxes);
+        ax_free(curve->along);
         ax_free(curve);
     }
 }
@@ -465,6 +561,33 @@ ax_curve_range ax_curve_extent(const ax_curve* curve)
     return (ax_curve_range){0, curve->count, curve->closed, !straight || curve->count == 1};
 }
 
+double ax_curve_length(const ax_curve* curve, double t)
+{
+    if (curve->kind == LINE)
+        return t;
+    double at = t * curve->cuts / ax_curve_extent(curve).to;
+    int cut = (int)ax_clamp(floor(at), 0, curve->cuts - 1);
+    return curve->along[cut] + (at - cut) * (curve->along[cut + 1] - curve->along[cut]);
+}
+
+double ax_curve_at_length(const ax_curve* curve, double length)
+{
+    if (curve->kind == LINE)
+        return length;
+    ax_curve_range range = ax_curve_extent(curve);
+    double whole = curve->along[curve->cuts];
+    if (range.closed && whole > 0)
+        length -= whole * floor(length / whole);
+    int lo = 0, hi = curve->cuts; // the cut whose stretch holds it
+    while (hi - lo > 1) {
+        int middle = (lo + hi) / 2;
+        *(curve->along[middle] <= length ? &lo : &hi) = middle;
+    }
+    double stretch = curve->along[hi] - curve->along[lo];
+    double at = lo + (stretch > 0 ? ax_clamp((length - curve->along[lo]) / stretch, 0, 1) : 0);
+    return at * range.to / curve->cuts;
+}
+
 static void place_nearest(const void* geometry, const double x[3], double out[3])
 {
     ax_curve_nearest(geometry, x, out);
@@ -472,16 +595,16 @@ static void place_nearest(const void* geometry, const double x[3], double out[3]
 
 static double place_parameter(const void* geometry, const double x[3], double out[3])
 {
-    return ax_curve_nearest(geometry, x, out);
+    return ax_curve_length(geometry, ax_curve_nearest(geometry, x, out));
 }
 
-static void place_point(const void* geometry, double t, double out[3])
+static void place_point(const void* geometry, double length, double out[3])
 {
-    ax_curve_point(geometry, t, out);
+    ax_curve_point(geometry, ax_curve_at_length(geometry, length), out);
 }
 
 ax_place ax_curve_place(const ax_curve* curve)
 {
-    double period = curve->kind == ELLIPSE ? 1 : (curve->closed ? curve->count : 0);
+    double period = ax_curve_extent(curve).closed ? curve->along[curve->cuts] : 0;
     return (ax_place){place_nearest, curve, place_parameter, place_point, period};
 }

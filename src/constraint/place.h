@@ -27,6 +27,10 @@ ax_curve* ax_curve_polyline(const double (*points)[3], int count, bool closed);
 // four pieces.
 ax_curve* ax_curve_spline(const double (*points)[3], int count, bool closed);
 
+// Straight pieces between the points, corners rounded by arcs of `radius`, or of as much as half the shorter side has room for: tangent
+// continuous. An arc is two cubic pieces, within a hundred-thousandth of its radius up to a right angle. 0: a polyline.
+ax_curve* ax_curve_rounded(const double (*points)[3], int count, bool closed, double radius);
+
 void ax_curve_free(ax_curve* curve);
 
 // Nearest point to x; returns its parameter. Of equally near points always the same one. O(log n) pieces for x near the
@@ -47,5 +51,10 @@ typedef struct ax_curve_range {
 } ax_curve_range;
 ax_curve_range ax_curve_extent(const ax_curve* curve);
 
-// The curve as a place, borrowed.
+// Length along the curve from its start to t, within t's range, and the t at a length: inverse to one another, monotone, and exact on
+// lines, circles and polylines; elsewhere measured along chords, within a thousandth. Closed curves go round.
+double ax_curve_length(const ax_curve* curve, double t);
+double ax_curve_at_length(const ax_curve* curve, double length);
+
+// The curve as a place, borrowed. Its parameter is the length along it, so that gaps between points mean the same everywhere.
 ax_place ax_curve_place(const ax_curve* curve);

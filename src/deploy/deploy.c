@@ -38,7 +38,7 @@ static bool finish(ladder* l, const ax_progress* progress, bool* cancelled)
 
 typedef struct bead {
     int curve;         // the first sliding hinge on the same one
-    double start, end; // parameters
+    double start, end; // along it
 } bead;
 
 static int along_curves(const void* a, const void* b)
@@ -49,7 +49,7 @@ static int along_curves(const void* a, const void* b)
     return (p->start > q->start) - (p->start < q->start);
 }
 
-// Smallest and largest gap between neighbours on their curve at x, in parameter and over the mean gap; 1 where nothing slides on
+// Smallest and largest gap between neighbours on their curve at x, along it and over the mean gap; 1 where nothing slides on
 // curves. Neighbours are those at the start; hinges that have passed each other have a gap below 0.
 static void measure_gaps(const ax_deploy_model* m, const double (*x)[3], double* least, double* most)
 {
@@ -62,8 +62,8 @@ static void measure_gaps(const ax_deploy_model* m, const double (*x)[3], double*
         bead* b = &beads[count++];
         for (b->curve = 0; m->hold[m->slide[b->curve]].curve != hold->curve; ++b->curve)
             continue;
-        b->start = ax_deploy_parameter(m, m->slide[k], m->support[m->slide[k]]);
-        b->end = ax_deploy_parameter(m, m->slide[k], x[m->slide[k]]);
+        b->start = ax_deploy_along(m, m->slide[k], m->support[m->slide[k]]);
+        b->end = ax_deploy_along(m, m->slide[k], x[m->slide[k]]);
     }
     qsort(beads, (size_t)count, sizeof *beads, along_curves);
     *least = count ? INFINITY : 1, *most = count ? -INFINITY : 1;
@@ -71,8 +71,9 @@ static void measure_gaps(const ax_deploy_model* m, const double (*x)[3], double*
     for (int first = 0, last; first < count; first = last) {
         for (last = first; last < count && beads[last].curve == beads[first].curve; ++last)
             continue;
-        ax_curve_range range = ax_curve_extent(m->hold[m->slide[beads[first].curve]].curve);
-        double span = range.closed ? range.to - range.from : 0, round_trip = 0;
+        const ax_curve* curve = m->hold[m->slide[beads[first].curve]].curve;
+        ax_curve_range range = ax_curve_extent(curve);
+        double span = range.closed ? ax_curve_length(curve, range.to) : 0, round_trip = 0;
         int n = last - first, gaps = n - !range.closed, lowest = 0;
         for (int k = 0; k < gaps; ++k) {
             const bead *from = &beads[first + k], *to = &beads[first + (k + 1) % n];

@@ -10,7 +10,7 @@ typedef struct ax_deployment {
     ax_residuals residuals;
     double energy;             // of the normalised problem: load 1, edge 1
     double force_over_tension; // largest edge force over load x edge / rim: thousands tell of supports too far apart
-    // Smallest and largest gap between neighbours on their curve, in parameter and over the mean; 1 where nothing slides on
+    // Smallest and largest gap between neighbours on their curve, in length and over the mean; 1 where nothing slides on
     // curves. Below 0: hinges have passed each other, and the state is not exact whatever its residuals.
     double gap_least, gap_most;
     bool gathered; // hinges leave a part of their curve bare: it is longer than the linkage can reach. Not exact either

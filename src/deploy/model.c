@@ -168,10 +168,10 @@ void ax_deploy_return(const ax_deploy_model* m, int h, const double from[3], dou
     memcpy(x, place, sizeof place);
 }
 
-double ax_deploy_parameter(const ax_deploy_model* m, int h, const double x[3])
+double ax_deploy_along(const ax_deploy_model* m, int h, const double x[3])
 {
     double place[3];
-    return nearest(m, m->hold[h].curve, x, place);
+    return ax_curve_length(m->hold[h].curve, nearest(m, m->hold[h].curve, x, place));
 }
 
 static double unit_tangent(const ax_curve* curve, double t, double tangent[3], double second[3])

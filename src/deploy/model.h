@@ -60,8 +60,8 @@ static inline bool ax_deploy_placed(const ax_deploy_model* model, int h)
 // `from` on, where the direction is chosen anew.
 void ax_deploy_return(const ax_deploy_model* model, int h, const double from[3], double x[3]);
 
-// Parameter of the point of its curve nearest to a place of hinge h.
-double ax_deploy_parameter(const ax_deploy_model* model, int h, const double x[3]);
+// Length along its curve, document units, to the point nearest to a place of hinge h.
+double ax_deploy_along(const ax_deploy_model* model, int h, const double x[3]);
 
 // The directions in which hinge slide[k] can move: out = allowed v is the part of v along its curve or plane, nothing at a
 // corner or an end towards which it is pulled from both sides.
