@@ -5,7 +5,7 @@
 #include "base/clock.h"
 #include "base/random.h"
 #include "base/vec.h"
-#include "joint/joint.h"
+#include "design/apart.h"
 #include "linkage/lattice.h"
 #include "mesh/closest.h"
 #include "mesh/geometry.h"
@@ -295,30 +295,13 @@ static const ax_progress* remaining(ax_progress_part* slot, const ax_progress* p
     return ax_progress_within(slot, progress, 1 - ldexp(1, -k), 1 - ldexp(1, -k - 1));
 }
 
-// Solves jointly; where panels then overlap flat, names those pairs to the solver and solves again. The mouth bound keeps
-// neighbours apart, but two rim panels can meet past the ends of an opening, where no mouth sees them.
-static ax_status solve_apart(ax_design* design, ax_joint_problem* problem, const ax_progress* progress, ax_error* error)
+static ax_status solve_jointly(ax_design* design, ax_joint_problem* problem, const ax_progress* progress,
+                               ax_error* error)
 {
-    enum { ROUNDS = 5, MOST_PAIRS = 4096 };
-    int(*pairs)[2] = ax_alloc(MOST_PAIRS, sizeof *pairs), count = 0;
-    ax_joint_result joint = {0};
-    ax_status status = AX_OK;
+    ax_joint_result joint;
     double start = ax_seconds();
-    problem->apart = (const int(*)[2])pairs;
-    for (int round = 0; round < ROUNDS && status == AX_OK; ++round) {
-        ax_progress_part slot;
-        problem->apart_count = count;
-        status =
-            ax_joint_solve(problem, design->flat, design->deployed, remaining(&slot, progress, round), &joint, error);
-        design->report.joint_steps += joint.steps;
-        int found = status == AX_OK ? ax_measure_overlaps(&design->linkage, (const double(*)[2])design->flat, 0,
-                                                          MOST_PAIRS - count, pairs + count)
-                                    : 0;
-        if (found == 0)
-            break;
-        count = count + found < MOST_PAIRS ? count + found : MOST_PAIRS;
-    }
-    ax_free(pairs);
+    ax_status status = ax_solve_apart(problem, design->flat, design->deployed, progress, &joint, error);
+    design->report.joint_steps += joint.steps;
     design->report.seconds_joint += ax_seconds() - start;
     if (status == AX_OK) {
         ax_design_measure(design);
@@ -352,7 +335,7 @@ static ax_status solve_on_lattice(ax_design* design, const flat_domain* domain, 
                                 .border_unequal = options->border == AX_BORDER_RELEASED ? INFINITY : 0,
                                 .mouth_min = options->mouth_min * AX_PI / 180,
                                 .scale_max = scale_max};
-    ax_status status = solve_apart(design, &problem, progress, error);
+    ax_status status = solve_jointly(design, &problem, progress, error);
     ax_free(places);
     return status;
 }

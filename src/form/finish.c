@@ -2,6 +2,7 @@
 #include "form/state.h"
 
 #include "base/vec.h"
+#include "design/apart.h"
 #include "design/simulate.h"
 #include "joint/joint.h"
 
@@ -193,7 +194,7 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
     ax_joint_result joint = {0};
     ax_progress_part first, second;
     ax_status status =
-        ax_joint_solve(&problem, flat, deployed, ax_progress_within(&first, progress, 0, 0.4), &joint, error);
+        ax_solve_apart(&problem, flat, deployed, ax_progress_within(&first, progress, 0, 0.4), &joint, error);
     if (status == AX_OK && !joint.converged)
         status = ax_fail(
             error, AX_CANNOT_REALISE,
