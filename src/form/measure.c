@@ -414,6 +414,52 @@ static void measure_overhang(const ax_form* f, ax_form_report* r)
     ax_free(curvature);
 }
 
+// Distance of the part of a panel that comes nearest to a surface, if it is below *least. No part of a triangle is further from its
+// centroid than the furthest corner, so parts that cannot come nearer are left out and the rest is quartered.
+static void nearest_part(const ax_closest* tree, const double corner[3][3], double tolerance, int face, double* least)
+{
+    double centre[3], reach = 0;
+    for (int c = 0; c < 3; ++c)
+        centre[c] = (corner[0][c] + corner[1][c] + corner[2][c]) / 3;
+    for (int k = 0; k < 3; ++k)
+        reach = fmax(reach, ax_distance3(centre, corner[k]));
+    ax_closest_point on = ax_closest_find(tree, centre, face);
+    *least = fmin(*least, on.distance);
+    if (reach < tolerance || on.distance - reach > *least - tolerance)
+        return;
+    double middle[3][3];
+    for (int k = 0; k < 3; ++k)
+        for (int c = 0; c < 3; ++c)
+            middle[k][c] = 0.5 * (corner[(k + 1) % 3][c] + corner[(k + 2) % 3][c]);
+    nearest_part(tree, (const double(*)[3])middle, tolerance, on.face, least);
+    for (int k = 0; k < 3; ++k) {
+        double part[3][3];
+        memcpy(part[0], corner[k], sizeof part[0]);
+        memcpy(part[1], middle[(k + 2) % 3], sizeof part[1]);
+        memcpy(part[2], middle[(k + 1) % 3], sizeof part[2]);
+        nearest_part(tree, (const double(*)[3])part, tolerance, on.face, least);
+    }
+}
+
+// Least distance of the panels from an underlay, to a thousandth of an edge, and the panel.
+static double underlay_distance(const ax_form* f, int k, int* panel)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
+    double tolerance = 1e-3 * ax_form_sides_mean(f), least = INFINITY;
+    ax_closest* tree = ax_closest_make(f->underlays + k);
+    *panel = -1;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double corner[3][3], before = least;
+        for (int c = 0; c < 3; ++c)
+            memcpy(corner[c], x[linkage->triangles[t][c]], sizeof corner[c]);
+        nearest_part(tree, (const double(*)[3])corner, tolerance, -1, &least);
+        *panel = least < before ? t : *panel;
+    }
+    ax_closest_free(tree);
+    return least;
+}
+
 static void find_problems(ax_form* f, ax_form_report* r)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
@@ -489,21 +535,13 @@ static void find_problems(ax_form* f, ax_form_report* r)
         tell(r, AX_SEVERITY_NOTE, "overhang", r->overhang, 0, "%.1f %% of the panels look down: no height field.",
              100 * r->overhang);
     for (int k = 0; k < f->underlay_count; ++k) {
-        ax_closest* tree = ax_closest_make(f->underlays + k);
-        const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
-        double least = INFINITY;
-        int at = -1;
-        for (int h = 0; h < linkage->hinge_count; ++h) {
-            double d = ax_closest_find(tree, x[h], -1).distance;
-            if (d < least)
-                least = d, at = h;
-        }
+        int at;
+        double least = underlay_distance(f, k, &at);
         if (least < f->clearances[k])
             tell(r, AX_SEVERITY_FAILURE, "clearance", least, f->clearances[k],
                  "The shell comes within %.3g %s of '%s'; %.3g are asked.", least, unit, f->underlay_names[k],
                  f->clearances[k])
-                ->hinge = at;
-        ax_closest_free(tree);
+                ->triangle = at;
     }
     if (r->finding_count)
         qsort(r->findings, (size_t)r->finding_count, sizeof *r->findings, by_severity);
