@@ -7,6 +7,7 @@ build release
 bin=$root/build/release/bin
 mkdir -p "$root/docs/pictures"
 "$bin/make_surfaces" "$root/examples/surfaces"
+"$bin/make_room" "$root/examples/room"
 "$bin/make_pictures" "$root/examples/surfaces" "$root/docs/pictures"
 "$bin/auxshell" --reference >"$root/docs/command.md"
 "$bin/auxshell" operators --markdown >"$root/docs/operators.md"

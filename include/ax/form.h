@@ -52,6 +52,7 @@ typedef struct ax_curve_shape {
     bool closed; // polylines and splines
     int count;
     const double (*points)[3]; // borrowed: calls that take a shape copy it
+    double fillet; // polylines: corners are rounded by arcs of this radius, where the sides have room; 0: sharp
 } ax_curve_shape;
 
 typedef enum ax_rim_kind {
@@ -142,6 +143,11 @@ void ax_form_iterate(ax_form* form, int iterations);
 ax_status ax_form_settle(ax_form* form, int iterations, const ax_progress* progress, ax_error* error);
 // Start of the deployed states: `height` out of plane (over the sheet's radius), a bowl or dome; forgets multipliers.
 void ax_form_restart(ax_form* form, double height);
+
+// Prescribes scale factors with which the sheet hangs from its rim like a film, evenly pulled and with every hole open: its lowest point
+// `depth` below the film that the rim alone would span (negative: above it). Keeps the dynamics; without any, the form expands.
+// AX_CANNOT_REALISE unless the rim is held all the way round. On failure the form is left half-way: keep a copy.
+ax_status ax_form_drape(ax_form* form, double depth, const ax_progress* progress, ax_error* error);
 
 typedef struct ax_finish {
     bool exact;                            // every state exact; otherwise `reason` tells

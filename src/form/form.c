@@ -93,7 +93,7 @@ ax_curve* ax_curve_of_shape(const ax_curve_shape* s)
     case AX_CURVE_ELLIPSE:
         return ax_curve_ellipse(s->points[0], s->points[1], s->points[2]);
     case AX_CURVE_POLYLINE:
-        return ax_curve_polyline(s->points, s->count, s->closed);
+        return ax_curve_rounded(s->points, s->count, s->closed, s->fillet);
     default:
         return ax_curve_spline(s->points, s->count, s->closed);
     }

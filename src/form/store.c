@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-static const char magic[8] = "axform03";
+static const char magic[8] = "axform04";
 enum { MOST = 100000000 }; // entries of any one array
 
 typedef struct stream {
@@ -109,6 +109,7 @@ static void shape(stream* s, ax_curve_shape* curve)
 {
     CHOICE(s, curve->kind, AX_CURVE_SPLINE);
     flag(s, &curve->closed);
+    REAL(s, curve->fillet);
     counted(s, &curve->count, 0);
     ARRAY(s, curve->points, curve->count);
     reals(s, *curve->points, s->bad ? 0 : 3 * (size_t)curve->count);

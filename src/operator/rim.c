@@ -204,6 +204,7 @@ ax_status ax_rim_slide_through(const ax_operator_context* context, const ax_rim_
 {
     const ax_curve_shape curve = {.kind = kind,
                                   .closed = through->closed,
+                                  .fillet = through->fillet,
                                   .count = through->points.count,
                                   .points = (const double(*)[3])through->points.values};
     return ax_rim_slide(context, through->hinges, &curve, error);

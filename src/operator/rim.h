@@ -32,11 +32,15 @@ typedef struct ax_rim_through {
     const char* hinges;
     ax_points points;
     bool closed;
+    double fillet; // polylines
 } ax_rim_through;
 void ax_rim_through_defaults(void* through);
 const char* ax_rim_through_check(const void* through, int* field); // its points are field 1
 ax_status ax_rim_slide_through(const ax_operator_context* context, const ax_rim_through* through, ax_curve_kind kind,
                                ax_error* error);
+#define AX_RIM_FILLET(T)                                                                                               \
+    AX_NUMBER(T, fillet, "Fillet", "length", 0, 1e9,                                                                   \
+              .doc = "Radius of the arcs that round the corners; a panel's size spares panels the corner. 0: sharp.")
 #define AX_RIM_CLOSED AX_FLAG(ax_rim_through, closed, "Closed", .doc = "Whether the last is joined to the first.")
 
 // Operators on one control point of the curve that a part slides on.

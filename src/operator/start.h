@@ -8,6 +8,7 @@ typedef struct ax_start {
     double edge, scale, angle; // degrees
     bool inside;
     int unit;
+    double fillet; // of outlines with corners
 } ax_start;
 
 ax_start ax_start_default(void);
@@ -57,6 +58,12 @@ extern const char* const ax_unit_words[3];
     {                                                                                                                  \
         .name = "unit", .title = "Unit", .unit = "", .kind = AX_FIELD_CHOICE, .choices = ax_unit_words,                \
         .choice_count = 3, .offset = offsetof(T, start.unit), .doc = "Unit of every length in the recipe."             \
+    }
+
+#define AX_START_FILLET(T)                                                                                             \
+    {                                                                                                                  \
+        .name = "fillet", .title = "Fillet", .unit = "length", .kind = AX_FIELD_NUMBER, .hi = 1e9,                     \
+        .offset = offsetof(T, start.fillet), .doc = "Radius of the arcs that round the corners; 0: sharp."             \
     }
 
 // Lays the linkage over a closed outline, which replaces the form of the context.

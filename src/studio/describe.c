@@ -49,7 +49,8 @@ static json_t* curve(const ax_curve_shape* shape)
     json_t* points = json_array();
     for (int k = 0; k < shape->count; ++k)
         json_array_append_new(points, describe_point(shape->points[k]));
-    return json_pack("{s:s, s:b, s:o}", "kind", curve_word(shape->kind), "closed", shape->closed, "points", points);
+    return json_pack("{s:s, s:b, s:f, s:o}", "kind", curve_word(shape->kind), "closed", shape->closed, "fillet",
+                     shape->fillet, "points", points);
 }
 
 // `figure`: what came of it, if it was measured.

@@ -5,6 +5,7 @@ static const ax_field fields[] = {
     AX_POINTS(ax_rim_through, points, "Corners", 3, 2, .hi = 10000, .required = true,
               .doc = "Corners of the curve in space, in order, the way the rim runs: counter-clockwise."),
     AX_RIM_CLOSED,
+    AX_RIM_FILLET(ax_rim_through),
 };
 
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)

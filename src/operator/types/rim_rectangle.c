@@ -2,7 +2,7 @@
 
 typedef struct arguments {
     const char* hinges;
-    double width, height, turn, centre[3];
+    double width, height, turn, centre[3], fillet;
 } arguments;
 
 static void defaults(void* given)
@@ -18,6 +18,7 @@ static const ax_field fields[] = {
     AX_NUMBER(arguments, height, "Height", "length", 0, 1e9, .open = true, .required = true, .doc = "Along y."),
     AX_NUMBER(arguments, turn, "Turn", "deg", -360, 360, .doc = "About the vertical through the centre."),
     AX_VECTOR(arguments, centre, "Centre", "length", 3, .doc = "Of the rectangle."),
+    AX_RIM_FILLET(arguments),
 };
 
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)
@@ -30,15 +31,18 @@ static ax_status apply(const ax_operator_context* context, const void* given, ax
         points[k][1] = a->centre[1] + s * x + c * y;
         points[k][2] = a->centre[2];
     }
-    const ax_curve_shape curve = {
-        .kind = AX_CURVE_POLYLINE, .closed = true, .count = 4, .points = (const double(*)[3])points};
+    const ax_curve_shape curve = {.kind = AX_CURVE_POLYLINE,
+                                  .closed = true,
+                                  .fillet = a->fillet,
+                                  .count = 4,
+                                  .points = (const double(*)[3])points};
     return ax_rim_slide(context, a->hinges, &curve, error);
 }
 
 const ax_operator_type ax_operator_rim_rectangle = {
     .name = "rim_rectangle",
     .title = "Rim on a rectangle",
-    .doc = "Lets hinges of the rim slide on a level rectangle, in their order; some come to lie in its corners.",
+    .doc = "Lets hinges of the rim slide on a level rectangle, in their order.",
     .group = "boundary",
     .fields = fields,
     .field_count = AX_COUNT(fields),

@@ -15,6 +15,7 @@ static const ax_field fields[] = {
     AX_POINTS(arguments, points, "Corners", 2, 3, .hi = 100000, .required = true,
               .doc = "Corners of the sheet in order, either way round; the last is joined to the first."),
     AX_START_FIELDS(arguments),
+    AX_START_FILLET(arguments),
 };
 
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)

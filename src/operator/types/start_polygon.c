@@ -22,6 +22,7 @@ static const ax_field fields[] = {
     AX_NUMBER(arguments, turn, "Turn", "deg", -360, 360, .doc = "Direction of the first corner against the x axis."),
     AX_VECTOR(arguments, centre, "Centre", "length", 2, .doc = "Centre of the sheet."),
     AX_START_FIELDS(arguments),
+    AX_START_FILLET(arguments),
 };
 
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)

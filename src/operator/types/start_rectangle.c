@@ -18,6 +18,7 @@ static const ax_field fields[] = {
               .doc = "Extent of the sheet along y."),
     AX_VECTOR(arguments, centre, "Centre", "length", 2, .doc = "Centre of the sheet."),
     AX_START_FIELDS(arguments),
+    AX_START_FILLET(arguments),
 };
 
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)
