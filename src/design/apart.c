@@ -2,7 +2,7 @@
 
 #include "analysis/measure.h"
 
-ax_status ax_solve_apart(ax_joint_problem* problem, double (*flat)[2], double (*deployed)[3],
+ax_status ax_solve_apart(ax_joint_problem* problem, double depth, double (*flat)[2], double (*deployed)[3],
                          const ax_progress* progress, ax_joint_result* result, ax_error* error)
 {
     enum { ROUNDS = 5, MOST_PAIRS = 4096 };
@@ -17,7 +17,7 @@ ax_status ax_solve_apart(ax_joint_problem* problem, double (*flat)[2], double (*
         status = ax_joint_solve(problem, flat, deployed, ax_progress_within(&slot, progress, lo, (1 + lo) / 2), result,
                                 error);
         steps += result->steps;
-        int found = status == AX_OK ? ax_measure_overlaps(problem->linkage, (const double(*)[2])flat, 0,
+        int found = status == AX_OK ? ax_measure_overlaps(problem->linkage, (const double(*)[2])flat, depth,
                                                           MOST_PAIRS - count, pairs + count)
                                     : 0;
         if (found == 0)

@@ -300,7 +300,7 @@ static ax_status solve_jointly(ax_design* design, ax_joint_problem* problem, con
 {
     ax_joint_result joint;
     double start = ax_seconds();
-    ax_status status = ax_solve_apart(problem, design->flat, design->deployed, progress, &joint, error);
+    ax_status status = ax_solve_apart(problem, 0, design->flat, design->deployed, progress, &joint, error);
     design->report.joint_steps += joint.steps;
     design->report.seconds_joint += ax_seconds() - start;
     if (status == AX_OK) {
