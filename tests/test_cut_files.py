@@ -12,6 +12,7 @@ import xml.etree.ElementTree as ElementTree
 import zipfile
 
 import ezdxf
+import ezdxf.path
 
 import support.tap
 from support.command import SURFACES, CommandCase
@@ -110,7 +111,7 @@ class CutFiles(CommandCase):
             if not colour:
                 continue
             rgb = tuple(round(2.55 * float(n.strip("%"))) for n in colour[1].split(","))
-            a, b, c, d, x, y = (float(n) for n in re.findall(r"[-\d.e]+", e.attrib["transform"].strip("matrix")))
+            a, b, c, d, x, y = (float(n) for n in re.findall(r"[-\d.e]+", e.attrib.get("transform", "1 0 0 1 0 0").strip("matrix")))
             for path_text in re.findall(r"M[^M]*", e.attrib["d"]):
                 n = [float(t) for t in re.findall(r"[-\d.e]+", path_text)]
                 points = [(25.4 / 72 * (a * u + c * v + x), 25.4 / 72 * (b * u + d * v + y)) for u, v in zip(n[::2], n[1::2])]
@@ -157,6 +158,140 @@ class CutFiles(CommandCase):
         self.document = other
         text = subprocess.run(["pdfinfo", self.export("dome.pdf")], capture_output=True, text=True, check=True).stdout
         self.assertIn("Kuppel ä)", text)
+
+    def sheets_of(self, *words):
+        """What ezdxf reads of all sheets: per sheet its size and, by layer, closed outlines and open lines as points, and circles."""
+        main = self.export("dome.dxf", *words)
+        paths = sorted(self.folder.glob("dome-*.dxf")) or [main]
+        for path in paths:
+            drawing, lines, circles = self.read_dxf(path), {}, {}
+            for e in drawing.modelspace():
+                if e.dxftype() == "CIRCLE":
+                    circles.setdefault(e.dxf.layer, []).append((e.dxf.center.x, e.dxf.center.y, e.dxf.radius))
+                    continue
+                cut = e.dxf.layer in ("SLIT", "CUT")  # the others have no arcs
+                points = [(p[0], p[1]) for p in (ezdxf.path.make_path(e).flattening(0.05) if cut else e.get_points())]
+                lines.setdefault(e.dxf.layer, []).append((points, e.is_closed))
+            yield drawing.header["$EXTMAX"], lines, circles
+
+    def assert_clean(self, size, lines, circles):
+        """Everything lies within the sheet; no two cuts coincide or cross."""
+        segments, cells = [], {}
+        for layer, all_lines in lines.items():
+            for points, _ in all_lines:
+                self.assertTrue(all(-1e-6 <= p[0] <= size[0] + 1e-6 and -1e-6 <= p[1] <= size[1] + 1e-6 for p in points))
+                if layer in ("SLIT", "CUT"):
+                    segments += [(a, b) for a, b in zip(points, points[1:]) if distance(a, b) > 1e-9]
+        for x, y, r in circles.get("HOLE", []):
+            self.assertTrue(r <= x <= size[0] - r and r <= y <= size[1] - r)
+            ring = [(x + r * math.cos(k * math.pi / 6), y + r * math.sin(k * math.pi / 6)) for k in range(13)]
+            segments += list(zip(ring, ring[1:]))
+        cell = 20
+        for i, (a, b) in enumerate(segments):
+            for u in range(int(min(a[0], b[0]) // cell), int(max(a[0], b[0]) // cell) + 1):
+                for v in range(int(min(a[1], b[1]) // cell), int(max(a[1], b[1]) // cell) + 1):
+                    cells.setdefault((u, v), []).append(i)
+
+        def side(a, b, c):
+            return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        for near in cells.values():
+            for n, i in enumerate(near):
+                (a, b) = segments[i]
+                for k in near[:n]:
+                    (c, d) = segments[k]
+                    same = min(distance(a, c) + distance(b, d), distance(a, d) + distance(b, c))
+                    self.assertGreater(same, 1e-3, (a, b))
+                    deep = 1e-6 * distance(a, b) * distance(c, d)
+                    crossing = side(a, b, c) * side(a, b, d) < -deep**2 and side(c, d, a) * side(c, d, b) < -deep**2
+                    self.assertFalse(crossing, (a, b, c, d))
+
+    def assert_edges(self, found):
+        self.assertEqual(len(found), len(self.edges))
+        for ours, theirs in zip(sorted(self.edges), sorted(sorted(edges) for edges in found)):
+            for a, b in zip(ours, theirs):
+                self.assertAlmostEqual(a, b, delta=0.01)
+
+    def test_sheets_are_clean_and_panels_hinge_at_the_linkages_edges(self):
+        """The kerf cut away and the holes hinged again, from what is in the file."""
+        def within(point, outline):
+            inside = False
+            for a, b in zip(outline, outline[1:]):
+                if (a[1] > point[1]) != (b[1] > point[1]) and \
+                        point[0] < a[0] + (point[1] - a[1]) * (b[0] - a[0]) / (b[1] - a[1]):
+                    inside = not inside
+            return inside
+
+        def middle_lines(p):  # unit bisectors of a triangle's corners, outward
+            out = []
+            for k in range(3):
+                u = [sum((p[k][c] - p[o][c]) / distance(p[k], p[o]) for o in range(3) if o != k) for c in (0, 1)]
+                out.append([x / math.hypot(*u) for x in u])
+            return out
+        for joint, reach in (("pin", 0), ("ring:ring=16,hole=4", 16 / 2 + 4 / 2)):
+            found, holes = [], 0
+            for size, lines, circles in self.sheets_of("--joint", joint, "--material", "plywood-3", "--sheet", "3000x2000", "--kerf", "0.3"):
+                self.assert_clean(size, lines, circles)
+                for outline, closed in lines["CUT"]:
+                    self.assertTrue(closed)
+                    own = [c for c in circles["HOLE"] if within(c, outline)]
+                    holes += len(own)
+                    self.assertTrue(all(abs(2 * c[2] + 0.3 - 4) < 1e-5 or joint == "pin" for c in own))
+                    if len(own) < 3:  # on the rim nothing is joined
+                        continue
+                    p = [c[:2] for c in own]
+                    for _ in range(50):  # from the holes back to the hinges, along the bisectors that these make
+                        p = [[c[k] + reach * b[k] for k in (0, 1)] for c, b in zip(own, middle_lines(p))]
+                    found.append([distance(p[k], p[(k + 1) % 3]) for k in range(3)])
+            held = [h for t in self.design["triangles"] for h in t]
+            self.assertEqual(holes, len(held))
+            self.assert_edges(found)
+
+    def test_bare_panels_have_their_edges_when_the_kerf_is_cut_away(self):
+        kerf, found = 0.4, []
+        for size, lines, circles in self.sheets_of("--sheet", "3000x2000", "--kerf", kerf):
+            self.assert_clean(size, lines, circles)
+            for outline, _ in lines["CUT"]:
+                p = outline[:3]
+                area = abs(sum(p[k][0] * p[(k + 1) % 3][1] - p[(k + 1) % 3][0] * p[k][1] for k in range(3))) / 2
+                edges = [distance(p[k], p[(k + 1) % 3]) for k in range(3)]
+                inscribed = 2 * area / sum(edges)  # offset inward, a triangle is the same one, smaller
+                found.append([e * (inscribed - kerf / 2) / inscribed for e in edges])
+        self.assert_edges(found)
+
+    def test_sheets_of_living_hinges_are_clean(self):
+        for size, lines, circles in self.sheets_of("--joint", "living-hinge", "--material", "polypropylene-0.8", "--sheet", "3000x2000"):
+            self.assert_clean(size, lines, circles)
+            self.assertTrue(all(closed for _, closed in lines["CUT"]))
+
+    def test_svg_counts_and_measures_what_the_drawing_does(self):
+        words = ("--joint", "ring", "--material", "plywood-3", "--sheet", "3000x2000")
+        sheets = list(self.sheets_of(*words))
+        self.export("dome.svg", *words)
+        name = "{http://www.w3.org/2000/svg}"
+        for number, (size, lines, circles) in enumerate(sheets, 1):
+            path = self.folder / f"dome-{number}.svg"
+            root = ElementTree.parse(path).getroot()
+            self.assertEqual((root.attrib["width"], root.attrib["height"]), ("3000mm", "2000mm"))
+            layers = {g.attrib["id"]: g.findall(f"{name}path") for g in root.findall(f"{name}g")}
+            self.assertEqual(len(layers["CUT"]), len(lines["CUT"]))
+            self.assertEqual(len(layers["HOLE"]), len(circles["HOLE"]))
+            strokes = sum(p.attrib["d"].count("M") for p in layers["LABEL"])
+            self.assertEqual(strokes, len(lines["LABEL"]))
+            # as librsvg draws it
+            drawn = self.folder / "drawn.pdf"
+            subprocess.run(["rsvg-convert", "-f", "pdf", "-o", drawn, path], check=True)
+            self.assertEqual([round(x) for x in self.pdf_pages(drawn)[0]], [3000, 2000])
+            red = self.pdf_lines(drawn)[255, 0, 0]
+            self.assertEqual(len(red), len(lines["CUT"]) + len(circles["HOLE"]))
+            boxes = []
+            for points, closed in red:
+                self.assertTrue(closed)
+                xs, ys = [p[0] for p in points], [2000 - p[1] for p in points]
+                boxes.append(((min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2, (max(xs) - min(xs)) / 2))
+            for x, y, r in circles["HOLE"]:
+                box = min(boxes, key=lambda other: distance((x, y), other) + abs(r - other[2]))
+                for ours, theirs in zip((x, y, r), box):
+                    self.assertAlmostEqual(ours, theirs, delta=0.01)
 
     def test_sheets_bear_the_day_of_the_recipe(self):
         """That of the last step, of a finished design that of the file; never the day of export."""
