@@ -21,15 +21,19 @@ trap 'rm -rf "$scratch"' EXIT
 for page in 2:layout 4:steps 7:frame; do
   pdftoppm -r 60 -png -singlefile -f "${page%:*}" "$scratch/kidney.plan.pdf" "$root/docs/pictures/plan-${page#*:}"
 done
-for name in hybrid-shell mars-habitat pavilion pavilion-middle pavilion-inner; do
+for name in hybrid-shell pavilion pavilion-middle pavilion-inner; do
   "$bin/auxshell" run "$root/examples/$name.json" -o "$scratch/$name.auxshell" >/dev/null
-  [[ $name == pavilion-* ]] || "$bin/auxshell" export "$scratch/$name.auxshell" -o "$root/docs/pictures/$name.png"
 done
 "$bin/auxshell" shade "$scratch/pavilion.auxshell" "$scratch/pavilion-middle.auxshell" "$scratch/pavilion-inner.auxshell" \
   --place 47.38,8.54 --date 2026-06-21 --zone 2 --hours 10,17 --want 0,2,1.2,0.5 --want -2.3,2.5,0.8,0.42 --want 2.3,2,0.8,0.33 \
   --arrange --shift 0.8 --png "$root/docs/pictures/shade-pavilion.png" >/dev/null
 "$bin/auxshell" export "$scratch/hybrid-shell.auxshell" -o "$scratch/hybrid-shell.plan.pdf" --date none >/dev/null
 pdftoppm -r 60 -png -singlefile -f 13 "$scratch/hybrid-shell.plan.pdf" "$root/docs/pictures/plan-arch"
+mkdir "$scratch/frames"
+"$bin/make_deployment" "$root/examples/mars-habitat.json" "$scratch/frames" 42 640 400 >/dev/null
+frames=("$scratch"/frames/*.png)
+img2webp -loop 0 -lossy -q 60 -m 6 -d 900 "${frames[0]}" -d 80 "${frames[@]:1:40}" -d 1600 "${frames[41]}" \
+  -o "$root/docs/pictures/deployment.webp" >/dev/null
 # Pictures of the gallery as WebP: a tenth of the size.
 "$bin/auxshell" gallery --page "$root/docs/gallery.md" >/dev/null
 for picture in "$root"/docs/pictures/gallery/*.png; do

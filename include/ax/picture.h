@@ -12,6 +12,11 @@
 ax_status ax_picture_design(const ax_design* design, ax_state state, int width, int height, const char* path,
                             ax_error* error);
 
+// Pictures of a motion, one for each frame, all from where the whole of it is seen; without title and legend. A frame holds a place for
+// every hinge. `pattern` takes the frame's number, from 0: "frames/%03d.png".
+ax_status ax_picture_motion(const ax_design* design, int frame_count, double (*const* frames)[3], int width, int height,
+                            const char* pattern, ax_error* error);
+
 typedef enum ax_screen_field { AX_SCREEN_CURVATURE, AX_SCREEN_SCALE } ax_screen_field;
 // A picture of a screened target surface coloured by mean curvature (blue and hatched: H <= 0, orange: H > 0) or by lambda (hatched
 // outside 1 to 2), with legend. AX_BAD_INPUT when lambda is asked of a surface that was not flattened.

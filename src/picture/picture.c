@@ -292,6 +292,63 @@ static void describe(const ax_design* design, ax_state state, int hinge_count, c
     snprintf(c->text, sizeof c->text, "%d panels, %s", design->linkage.triangle_count, text);
 }
 
+// A state in a frame that holds all of `around`, the last `hinge_count` of which say from where it is seen.
+static ax_status draw_state(composition* c, const ax_design* design, ax_state state, const double (*at)[3],
+                            int around_count, const double (*around)[3], const char* path, ax_error* error)
+{
+    bool flat = state == AX_STATE_FLAT;
+    const ax_linkage* linkage = &design->linkage;
+    int hinges = linkage->hinge_count;
+    ax_scene scene = {0};
+    if (!ax_scene_find_frame(around_count, around, &scene.frame))
+        return ax_fail(error, AX_BAD_INPUT, "A hinge of the design has no finite place. Make the design again.");
+    double(*places)[3] = ax_alloc((size_t)hinges, sizeof *places);
+    float(*points)[3] = ax_alloc((size_t)around_count, sizeof *points);
+    double lowest = INFINITY;
+    for (int k = 0; k < 3; ++k) {
+        for (int h = 0; h < hinges; ++h)
+            places[h][k] = (at[h][k] - scene.frame.centre[k]) / scene.frame.size;
+        for (int h = 0; h < around_count; ++h) {
+            points[h][k] = (float)((around[h][k] - scene.frame.centre[k]) / scene.frame.size);
+            lowest = k == 2 ? fmin(lowest, points[h][2]) : lowest;
+        }
+    }
+    double normal[3], edge = mean_edge(linkage, (const double(*)[3])places);
+    sum_of_normals(linkage->triangle_count, (const int(*)[3])linkage->triangles, around + around_count - hinges,
+                   normal);
+    c->stance = take_stance(normal);
+
+    bool forces = state == AX_STATE_SIMULATED && design->edge_forces;
+    ax_panels_look look = {
+        .front = c->stance.front,
+        .palette = {forces ? AX_PALETTE_FORCE : AX_PALETTE_SCALE,
+                    forces ? signed_limit(*design->edge_forces, 3 * linkage->triangle_count) : 1},
+        .scale = design->scale,
+        .edge_forces = (const double(*)[3])design->edge_forces,
+    };
+    c->legend = design_legend(design, &look.palette);
+    compose(c, flat, around_count, (const float(*)[3])points, &scene.frame);
+    look.edge_pixels = edge * pixels_at_middle(&c->view) / c->render.pixel;
+    ax_panels_add(&scene, linkage, (const double(*)[3])places, edge, &look);
+    ax_free(places), ax_free(points);
+
+    c->light = light_setup(&c->stance, lowest - 0.1 * edge, 0.11 * edge);
+    c->render.shadow = 0.46;
+    if (flat) { // a sheet lying a little above the ground
+        const double key[3] = {-0.35, 0.55, 1.4};
+        memcpy(c->light.key, key, sizeof key);
+        c->light.ground = lowest - 0.35 * edge;
+        c->light.contact_blur = fmax(0.16 * edge, 1 / c->view.scale), c->light.height_blur = 0;
+        c->light.self_shadow = false;
+        c->light.shadow_size = (int)ax_clamp(fmax(c->sheet.width, c->sheet.height), 512, 4096);
+    }
+    c->render.outlines =
+        (forces ? 0.2 : 0.45) * fading(2, 6, look.edge_pixels) * (0.25 + 0.75 * fading(8, 32, look.edge_pixels));
+    ax_status status = paint(c, &scene, path, error);
+    ax_scene_free(&scene);
+    return status;
+}
+
 ax_status ax_picture_design(const ax_design* design, ax_state state, int width, int height, const char* path,
                             ax_error* error)
 {
@@ -302,63 +359,41 @@ ax_status ax_picture_design(const ax_design* design, ax_state state, int width, 
     if (state == AX_STATE_SIMULATED && !design->simulated)
         return ax_fail(error, AX_BAD_INPUT,
                        "The design has no simulated state. Simulate it first, or choose flat or deployed.");
-    bool flat = state == AX_STATE_FLAT;
-    const ax_linkage* linkage = &design->linkage;
-    int hinges = linkage->hinge_count;
+    int hinges = design->linkage.hinge_count;
     double(*places)[3] = ax_calloc((size_t)hinges, sizeof *places);
-    float(*points)[3] = ax_alloc((size_t)hinges, sizeof *points);
     for (int h = 0; h < hinges; ++h)
-        if (flat)
+        if (state == AX_STATE_FLAT)
             memcpy(places[h], design->flat[h], sizeof design->flat[h]);
         else
             memcpy(places[h], (state == AX_STATE_SIMULATED ? design->simulated : design->deployed)[h],
                    sizeof places[h]);
     describe(design, state, hinges, (const double(*)[3])places, &c);
+    status = draw_state(&c, design, state, (const double(*)[3])places, hinges, (const double(*)[3])places, path, error);
+    ax_free(places);
+    return status;
+}
 
-    ax_scene scene = {0};
-    if (!ax_scene_find_frame(hinges, (const double(*)[3])places, &scene.frame)) {
-        ax_free(places), ax_free(points);
-        return ax_fail(error, AX_BAD_INPUT, "A hinge of the design has no finite place. Make the design again.");
+ax_status ax_picture_motion(const ax_design* design, int frame_count, double (*const* frames)[3], int width, int height,
+                            const char* pattern, ax_error* error)
+{
+    composition whole = {.unit_name = ""};
+    ax_status status = make_sheet(width, height, &whole.sheet, error);
+    whole.sheet.legend = whole.sheet.title = false;
+    size_t hinges = (size_t)design->linkage.hinge_count;
+    double(*around)[3] = ax_alloc(hinges * (size_t)frame_count, sizeof *around);
+    for (int k = 0; k < frame_count; ++k)
+        memcpy(around + hinges * (size_t)k, frames[k], hinges * sizeof *around);
+    for (int k = 0; k < frame_count && status == AX_OK; ++k) {
+        composition c = whole;
+        char path[4096];
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+        snprintf(path, sizeof path, pattern, k);
+#pragma GCC diagnostic pop
+        status = draw_state(&c, design, AX_STATE_DEPLOYED, (const double(*)[3])frames[k], (int)hinges * frame_count,
+                            (const double(*)[3])around, path, error);
     }
-    double lowest = INFINITY;
-    for (int h = 0; h < hinges; ++h)
-        for (int k = 0; k < 3; ++k) {
-            places[h][k] = (places[h][k] - scene.frame.centre[k]) / scene.frame.size;
-            points[h][k] = (float)places[h][k];
-            lowest = k == 2 ? fmin(lowest, places[h][2]) : lowest;
-        }
-    double normal[3], edge = mean_edge(linkage, (const double(*)[3])places);
-    sum_of_normals(linkage->triangle_count, (const int(*)[3])linkage->triangles, (const double(*)[3])places, normal);
-    c.stance = take_stance(normal);
-
-    bool forces = state == AX_STATE_SIMULATED && design->edge_forces;
-    ax_panels_look look = {
-        .front = c.stance.front,
-        .palette = {forces ? AX_PALETTE_FORCE : AX_PALETTE_SCALE,
-                    forces ? signed_limit(*design->edge_forces, 3 * linkage->triangle_count) : 1},
-        .scale = design->scale,
-        .edge_forces = (const double(*)[3])design->edge_forces,
-    };
-    c.legend = design_legend(design, &look.palette);
-    compose(&c, flat, hinges, (const float(*)[3])points, &scene.frame);
-    look.edge_pixels = edge * pixels_at_middle(&c.view) / c.render.pixel;
-    ax_panels_add(&scene, linkage, (const double(*)[3])places, edge, &look);
-    ax_free(places), ax_free(points);
-
-    c.light = light_setup(&c.stance, lowest - 0.1 * edge, 0.11 * edge);
-    c.render.shadow = 0.46;
-    if (flat) { // a sheet lying a little above the ground
-        const double key[3] = {-0.35, 0.55, 1.4};
-        memcpy(c.light.key, key, sizeof key);
-        c.light.ground = lowest - 0.35 * edge;
-        c.light.contact_blur = fmax(0.16 * edge, 1 / c.view.scale), c.light.height_blur = 0;
-        c.light.self_shadow = false;
-        c.light.shadow_size = (int)ax_clamp(fmax(width, height), 512, 4096);
-    }
-    c.render.outlines =
-        (forces ? 0.2 : 0.45) * fading(2, 6, look.edge_pixels) * (0.25 + 0.75 * fading(8, 32, look.edge_pixels));
-    status = paint(&c, &scene, path, error);
-    ax_scene_free(&scene);
+    ax_free(around);
     return status;
 }
 
