@@ -301,7 +301,7 @@ static void no_feasible_neighbour_has_less_energy(void** state)
     assert_near(result.energy, least, 1e-9);
     // pushed away and solved again from there it returns to the same place
     ax_random random = {7};
-    ax_newton* newton = ax_newton_make(&m);
+    ax_newton* newton = ax_newton_make(&m, NULL);
     for (int trial = 0; trial < 5; ++trial) {
         memcpy(y, x, (size_t)m.hinges * sizeof *x);
         for (int u = 0; u < m.unknowns; ++u)

@@ -206,14 +206,14 @@ static void random_starts_reach_one_state(void** state)
         ax_deployment first;
         assert_true(ax_deploy(&m, x, force, NULL, &first));
         assert_true(first.exact);
-        ax_newton* newton = ax_newton_make(&m);
+        ax_newton* newton = ax_newton_make(&m, NULL);
         for (uint64_t seed = 1; seed <= 3; ++seed) {
             ax_random random = {seed};
             ax_deploy_start(&m, 0, y);
             for (int u = 0; u < m.unknowns; ++u)
                 for (int c = 0; c < 3; ++c)
                     y[m.hinge[u]][c] += ax_random_uniform(&random, -0.4, 0.4);
-            ax_admm* admm = ax_admm_make(&m, (const double(*)[3])y);
+            ax_admm* admm = ax_admm_make(&m, (const double(*)[3])y, NULL);
             ax_residuals residuals;
             assert_true(ax_admm_run(admm, 1e-4, 6000, NULL, &residuals));
             memcpy(y, ax_admm_places(admm), (size_t)m.hinges * sizeof *y);

@@ -1,8 +1,11 @@
 // Sparse matrices and their factors against dense arithmetic.
 #include "base/random.h"
+#include "linalg/block_factor.h"
 #include "linalg/cholesky.h"
 
 #include "support/test.h"
+
+#include <string.h>
 
 enum { N = 60 };
 
@@ -91,17 +94,14 @@ static void every_kind_of_factor_solves(void** state)
     for (int i = 0; i < 3 * N; ++i)
         x[i] = ax_random_uniform(&random, -1, 1);
     ax_sparse_multiply(&matrix, x, b, 3);
-    const ax_factor_kind kinds[] = {AX_FACTOR_SUPERNODAL, AX_FACTOR_ONCE};
-    for (int k = 0; k < 2; ++k) {
-        ax_cholesky* factor = ax_cholesky_analyse(&matrix, kinds[k]);
-        assert_true(ax_cholesky_factor(factor, &matrix));
-        ax_cholesky_solve(factor, b, back, 3);
-        for (int i = 0; i < 3 * N; ++i)
-            assert_near(back[i], x[i], 1e-11);
-        ax_cholesky_counters counters = ax_cholesky_count(factor);
-        assert_true(counters.analyses == 1 && counters.factorisations == 1 && counters.solves == 1);
-        ax_cholesky_free(factor);
-    }
+    ax_cholesky* factor = ax_cholesky_analyse(&matrix);
+    assert_true(ax_cholesky_factor(factor, &matrix));
+    ax_cholesky_solve(factor, b, back, 3);
+    for (int i = 0; i < 3 * N; ++i)
+        assert_near(back[i], x[i], 1e-11);
+    ax_cholesky_counters counters = ax_cholesky_count(factor);
+    assert_true(counters.analyses == 1 && counters.factorisations == 1 && counters.solves == 1);
+    ax_cholesky_free(factor);
     ax_sparse_free(&matrix);
 }
 
@@ -110,7 +110,7 @@ static void an_indefinite_matrix_is_reported_and_the_factor_stays_usable(void** 
     (void)state;
     static double dense[N][N];
     ax_sparse matrix = make(dense, 6);
-    ax_cholesky* factor = ax_cholesky_analyse(&matrix, AX_FACTOR_ONCE);
+    ax_cholesky* factor = ax_cholesky_analyse(&matrix);
     double diagonal = matrix.value[matrix.start[7]];
     matrix.value[matrix.start[7]] = -1;
     assert_false(ax_cholesky_factor(factor, &matrix));
@@ -120,6 +120,64 @@ static void an_indefinite_matrix_is_reported_and_the_factor_stays_usable(void** 
     ax_sparse_free(&matrix);
 }
 
+// Blocks of three unknowns on a grid whose nodes meet all eight neighbours: separators are wide enough that threads share fronts.
+static ax_blocks grid_of_blocks(int side, double (*place)[3])
+{
+    int count = 0, (*pairs)[2] = ax_alloc((size_t)(4 * side * side), sizeof *pairs);
+    static const int step[4][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+    for (int v = 0; v < side * side; ++v) {
+        place[v][0] = v % side, place[v][1] = v / side, place[v][2] = 0;
+        for (int k = 0; k < 4; ++k) {
+            int column = v % side + step[k][0], row = v / side + step[k][1];
+            if (column >= 0 && column < side && row < side)
+                pairs[count][0] = v, pairs[count++][1] = row * side + column;
+        }
+    }
+    ax_blocks blocks = ax_blocks_make(side * side, 3, count, (const int(*)[2])pairs);
+    ax_random random = {11};
+    for (int u = 0; u < blocks.matrix.n; ++u)
+        for (int e = blocks.matrix.start[u]; e < blocks.matrix.start[u + 1]; ++e)
+            blocks.matrix.value[e] = blocks.matrix.row[e] == u ? 30 : ax_random_uniform(&random, -1, 1);
+    ax_free(pairs);
+    return blocks;
+}
+
+static void blocks_are_solved_alike_by_any_number_of_threads(void** state)
+{
+    (void)state;
+    enum { SIDE = 60 };
+    double(*place)[3] = ax_alloc(SIDE * SIDE, sizeof *place);
+    ax_blocks blocks = grid_of_blocks(SIDE, place);
+    int n = blocks.matrix.n;
+    double *x = AX_NEW(double, n), *b = AX_NEW(double, n), *first = AX_NEW(double, n), *back = AX_NEW(double, n);
+    ax_random random = {12};
+    for (int u = 0; u < n; ++u)
+        x[u] = ax_random_uniform(&random, -1, 1);
+    ax_sparse_multiply(&blocks.matrix, x, b, 1);
+    for (int threads = 1; threads <= 3; ++threads) {
+        ax_pool* pool = ax_pool_make(threads);
+        ax_block_factor* factor = ax_block_factor_make(&blocks, (const double(*)[3])place, pool);
+        double keep = blocks.matrix.value[blocks.matrix.start[n / 2]];
+        blocks.matrix.value[blocks.matrix.start[n / 2]] = -1;
+        assert_false(ax_block_factor_run(factor, &blocks)); // and the factor stays usable
+        blocks.matrix.value[blocks.matrix.start[n / 2]] = keep;
+        assert_true(ax_block_factor_run(factor, &blocks));
+        ax_block_factor_solve(factor, b, back);
+        for (int u = 0; u < n; ++u)
+            assert_near(back[u], x[u], 1e-12);
+        if (threads == 1)
+            memcpy(first, back, (size_t)n * sizeof *first);
+        else
+            assert_memory_equal(first, back, (size_t)n * sizeof *first);
+        ax_block_factor_free(factor);
+        ax_pool_free(pool);
+    }
+    ax_blocks_free(&blocks);
+    void* arrays[] = {place, x, b, first, back};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
+        ax_free(arrays[k]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -127,6 +185,7 @@ int main(void)
         cmocka_unit_test(a_principal_part_keeps_the_rows_that_have_a_number),
         cmocka_unit_test(every_kind_of_factor_solves),
         cmocka_unit_test(an_indefinite_matrix_is_reported_and_the_factor_stays_usable),
+        cmocka_unit_test(blocks_are_solved_alike_by_any_number_of_threads),
     };
     return cmocka_run_group_tests_name("linalg", tests, NULL, NULL);
 }

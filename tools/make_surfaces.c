@@ -106,7 +106,7 @@ static void raise_to_constant_curvature(ax_mesh* mesh, double h)
                 ax_entries_add(&entries, v, v, 1);
         ax_sparse stiffness = ax_entries_sparse(&entries, n);
         if (!factor)
-            factor = ax_cholesky_analyse(&stiffness, AX_FACTOR_SUPERNODAL);
+            factor = ax_cholesky_analyse(&stiffness);
         if (!ax_cholesky_factor(factor, &stiffness)) {
             fprintf(stderr, "make_surfaces: no surface of mean curvature %g over this plan\n", h);
             exit(1);

@@ -62,7 +62,7 @@ static double* angle_defects(const ax_mesh* mesh, const ax_topology* topology)
 static ax_cholesky* factor_principal(const ax_sparse* matrix, const int* index)
 {
     ax_sparse part = ax_sparse_principal(matrix, index);
-    ax_cholesky* factor = ax_cholesky_analyse(&part, AX_FACTOR_ONCE);
+    ax_cholesky* factor = ax_cholesky_analyse(&part);
     if (!ax_cholesky_factor(factor, &part)) {
         ax_cholesky_free(factor);
         factor = NULL;

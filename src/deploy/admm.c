@@ -17,6 +17,7 @@ enum { CHECK = 20, BALANCE = 2 * CHECK };
 
 struct ax_admm {
     const ax_deploy_model* model;
+    ax_pool* pool;
     double rho, turn; // the penalty, and the factor by which it is changed
     int way;          // of the last change, up 1, down -1
     double (*x)[3];
@@ -40,9 +41,9 @@ static void factorise(ax_admm* a, ax_entries* entries)
     int* order = AX_NEW(int, m->unknowns);
     for (int u = 0; u < m->unknowns; ++u)
         memcpy(place[u], m->rest[m->hinge[u]], sizeof *m->rest);
-    ax_order_by_place(&laplacian, (const double(*)[3])place, NULL, order);
+    ax_order_by_place(&laplacian, (const double(*)[3])place, a->pool, order);
     a->factor = ax_panels_analyse(&laplacian, order);
-    ax_panels_factor(a->factor, &laplacian, NULL); // an edge Laplacian plus 1e-9 is positive definite
+    ax_panels_factor(a->factor, &laplacian, a->pool); // an edge Laplacian plus 1e-9 is positive definite
     a->right = ax_alloc_aligned(ax_panels_rows(a->factor), sizeof *a->right);
     a->row = AX_NEW(int, m->unknowns);
     for (int k = 0; k < m->unknowns; ++k)
@@ -52,10 +53,10 @@ static void factorise(ax_admm* a, ax_entries* entries)
     ax_free(order);
 }
 
-ax_admm* ax_admm_make(const ax_deploy_model* m, const double (*x)[3])
+ax_admm* ax_admm_make(const ax_deploy_model* m, const double (*x)[3], ax_pool* pool)
 {
     ax_admm* a = AX_NEW0(ax_admm, 1);
-    *a = (ax_admm){.model = m, .rho = start_penalty * m->tension, .turn = 2};
+    *a = (ax_admm){.model = m, .pool = pool, .rho = start_penalty * m->tension, .turn = 2};
     a->x = ax_copy(x, (size_t)m->hinges, sizeof *a->x);
     a->z = ax_alloc((size_t)m->edge_count, sizeof *a->z);
     a->u = ax_calloc((size_t)m->edge_count, sizeof *a->u);
@@ -172,7 +173,7 @@ static void iterate(ax_admm* a)
     for (int k = 0; k < m->slide_count; ++k)
         for (int c = 0; c < 3; ++c)
             a->right[a->row[m->unknown[m->slide[k]]]][c] += a->at[k][c] - a->pull[k][c];
-    ax_panels_solve(a->factor, NULL, a->right);
+    ax_panels_solve(a->factor, a->pool, a->right);
     for (int u = 0; u < m->unknowns; ++u)
         memcpy(a->x[m->hinge[u]], a->right[a->row[u]], sizeof *a->x);
     for (int e = 0; e < m->edge_count; ++e) {

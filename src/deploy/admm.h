@@ -1,12 +1,14 @@
 // The projective stage of a deployment: the alternating direction method of multipliers with rigid edges as hard constraints.
 #pragma once
 
+#include "base/pool.h"
 #include "deploy/model.h"
 
 typedef struct ax_admm ax_admm;
 
-// One scalar factorisation of the edge Laplacian serves the whole run. `x` (hinges x 3) is the start and is copied.
-ax_admm* ax_admm_make(const ax_deploy_model* model, const double (*x)[3]);
+// One scalar factorisation of the edge Laplacian serves the whole run. `x` (hinges x 3) is the start and is copied, `pool` is
+// borrowed; NULL: one thread.
+ax_admm* ax_admm_make(const ax_deploy_model* model, const double (*x)[3], ax_pool* pool);
 void ax_admm_free(ax_admm* admm);
 
 // Starts the multipliers from edge forces instead of zero.

@@ -17,6 +17,7 @@ typedef struct ladder {
     const ax_deploy_model* model;
     double (*x)[3];
     double* force;
+    ax_pool* pool;
     ax_newton* newton;
     ax_deployment* result;
     double widest; // gap on a curve at the start
@@ -109,7 +110,7 @@ static bool climb(ladder* l, double first_level, double last_level, const ax_pro
     const ax_deploy_model* m = l->model;
     size_t bytes = (size_t)m->hinges * sizeof *l->x;
     ax_deploy_start(m, 0.01, l->x);
-    ax_admm* admm = ax_admm_make(m, (const double(*)[3])l->x);
+    ax_admm* admm = ax_admm_make(m, (const double(*)[3])l->x, l->pool);
     bool done = false;
     double lo = 0;
     if (m->slide_count) { // opened where they start, hinges keep their order and their spread along a curve
@@ -161,7 +162,7 @@ static bool swap_load(ladder* l, const ax_progress* progress, bool* cancelled)
     ladder other = *l;
     ax_deployment aside = {0};
     other.model = &inflated;
-    other.newton = ax_newton_make(&inflated);
+    other.newton = ax_newton_make(&inflated, l->pool);
     other.result = &aside;
     ax_progress_part slot;
     bool open = climb(&other, 1e-3, 1e-5, ax_progress_within(&slot, progress, 0, 0.5), cancelled);
@@ -179,7 +180,8 @@ bool ax_deploy(const ax_deploy_model* model, double (*x)[3], double* force, cons
                ax_deployment* result)
 {
     *result = (ax_deployment){0};
-    ladder l = {.model = model, .x = x, .force = force, .newton = ax_newton_make(model), .result = result};
+    ladder l = {.model = model, .x = x, .force = force, .pool = ax_pool_make(0), .result = result};
+    l.newton = ax_newton_make(model, l.pool);
     double closest;
     measure_gaps(model, (const double(*)[3])model->support, &closest, &l.widest);
     bool cancelled = false;
@@ -195,5 +197,6 @@ bool ax_deploy(const ax_deploy_model* model, double (*x)[3], double* force, cons
     measure_spread(&l);
     result->exact = result->exact && !result->gathered && result->gap_least > -1e-9;
     ax_newton_free(l.newton);
+    ax_pool_free(l.pool);
     return !cancelled;
 }

@@ -571,7 +571,7 @@ void ax_deploy_start(const ax_deploy_model* m, double noise, double (*x)[3])
             ax_entries_add(&entries, u[0], u[1], -1);
     }
     ax_sparse laplacian = ax_entries_sparse(&entries, m->unknowns);
-    ax_cholesky* factor = ax_cholesky_analyse(&laplacian, AX_FACTOR_ONCE);
+    ax_cholesky* factor = ax_cholesky_analyse(&laplacian);
     if (ax_cholesky_factor(factor, &laplacian))
         ax_cholesky_solve(factor, columns, columns, 3);
     ax_cholesky_free(factor);

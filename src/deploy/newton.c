@@ -9,7 +9,7 @@
 #include "deploy/newton.h"
 
 #include "base/vec.h"
-#include "linalg/cholesky.h"
+#include "linalg/block_factor.h"
 
 #include <string.h>
 
@@ -20,7 +20,7 @@ enum { UZAWA = 12, CHORDS = 4, TRIES = 3, REJECTIONS = 30 };
 struct ax_newton {
     const ax_deploy_model* model;
     ax_deploy_hessian hessian;
-    ax_cholesky* factor;
+    ax_block_factor* factor;
     int factorisations;
     ax_deploy_frame *frame, *trial_frame;
     double (*y)[3], (*work)[3], (*gradient)[3]; // per hinge
@@ -28,12 +28,16 @@ struct ax_newton {
     double *c, *trial_c, *trial_force, *change, *jd;
 };
 
-ax_newton* ax_newton_make(const ax_deploy_model* m)
+ax_newton* ax_newton_make(const ax_deploy_model* m, ax_pool* pool)
 {
     ax_newton* s = AX_NEW0(ax_newton, 1);
     s->model = m;
     s->hessian = ax_deploy_hessian_make(m);
-    s->factor = ax_cholesky_analyse(&s->hessian.blocks.matrix, AX_FACTOR_SUPERNODAL);
+    double(*place)[3] = ax_calloc((size_t)m->unknowns, sizeof *place);
+    for (int u = 0; u < m->unknowns; ++u)
+        memcpy(place[u], m->rest[m->hinge[u]], sizeof *m->rest);
+    s->factor = ax_block_factor_make(&s->hessian.blocks, (const double(*)[3])place, pool);
+    ax_free(place);
     s->frame = AX_NEW0(ax_deploy_frame, m->slide_count);
     s->trial_frame = AX_NEW0(ax_deploy_frame, m->slide_count);
     s->y = ax_alloc((size_t)m->hinges, sizeof *s->y);
@@ -59,7 +63,7 @@ void ax_newton_free(ax_newton* s)
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_deploy_hessian_free(&s->hessian);
-    ax_cholesky_free(s->factor);
+    ax_block_factor_free(s->factor);
     ax_free(s);
 }
 
@@ -112,7 +116,7 @@ static bool factorise(ax_newton* s, const double (*x)[3], const double* force, d
 {
     ax_deploy_hessian_fill(&s->hessian, s->model, x, s->frame, force, shift, mu);
     ++s->factorisations;
-    return ax_cholesky_factor(s->factor, &s->hessian.blocks.matrix);
+    return ax_block_factor_run(s->factor, &s->hessian.blocks);
 }
 
 // y = x + t d on the unknown hinges, back on their curves and planes.
@@ -146,7 +150,7 @@ static void kkt_step(ax_newton* s, const double (*x)[3], const double (*gradient
         for (int u = 0; u < n; ++u)
             for (int c = 0; c < 3; ++c)
                 s->right[u][c] = -(s->right[u][c] + gradient[u][c]);
-        ax_cholesky_solve(s->factor, s->right[0], s->d[0], 1);
+        ax_block_factor_solve(s->factor, s->right[0], s->d[0]);
         jacobian_times(m, x, (const double(*)[3])s->d, s->jd);
         double left = 0;
         for (int e = 0; e < edges; ++e) {
@@ -167,7 +171,7 @@ static void chord(ax_newton* s, const double (*x)[3], double mu, double* force)
     for (int e = 0; e < m->edge_count; ++e)
         s->jd[e] = mu * s->trial_c[e];
     transposed_times(s, x, s->jd, s->right);
-    ax_cholesky_solve(s->factor, s->right[0], s->move[0], 1);
+    ax_block_factor_solve(s->factor, s->right[0], s->move[0]);
     for (int u = 0; u < m->unknowns; ++u)
         for (int c = 0; c < 3; ++c)
             s->move[u][c] = -s->move[u][c];
@@ -306,7 +310,7 @@ void ax_newton_fit_forces(ax_newton* s, const double (*x)[3], double* force)
         return;
     for (int round = 0; round < 3; ++round) {
         lagrangian_gradient(s, x, force, s->frame, s->right);
-        ax_cholesky_solve(s->factor, s->right[0], s->d[0], 1);
+        ax_block_factor_solve(s->factor, s->right[0], s->d[0]);
         jacobian_times(m, x, (const double(*)[3])s->d, s->jd);
         for (int e = 0; e < m->edge_count; ++e)
             force[e] -= s->jd[e];

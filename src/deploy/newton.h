@@ -5,8 +5,8 @@
 
 typedef struct ax_newton ax_newton;
 
-// Analyses the matrix once; several runs share it.
-ax_newton* ax_newton_make(const ax_deploy_model* model);
+// Analyses the matrix once; several runs share it. `pool` is borrowed; NULL: one thread.
+ax_newton* ax_newton_make(const ax_deploy_model* model, ax_pool* pool);
 void ax_newton_free(ax_newton* newton);
 
 typedef struct ax_newton_result {

@@ -23,7 +23,7 @@
 
 #include "base/vec.h"
 #include "constraint/eigen3.h"
-#include "linalg/cholesky.h"
+#include "linalg/block_factor.h"
 #include "linkage/lattice.h"
 
 #include <assert.h>
@@ -66,7 +66,8 @@ typedef struct solver {
     unsigned char* in_pattern;       // per mouth: its outer pair is in the matrix
     ax_blocks matrix;
     int (*block)[3]; // per triangle: block opposite each corner
-    ax_cholesky* factor;
+    ax_pool* pool;
+    ax_block_factor* factor;
     int factorisations;
 } solver;
 
@@ -92,7 +93,7 @@ static void build_pattern(solver* s)
         }
     if (s->factor) {
         ax_blocks_free(&s->matrix);
-        ax_cholesky_free(s->factor);
+        ax_block_factor_free(s->factor);
     }
     s->matrix = ax_blocks_make(s->hinges, UNKNOWNS, count, (const int(*)[2])pairs);
     ax_free(pairs);
@@ -101,7 +102,11 @@ static void build_pattern(solver* s)
         edge_ends(s, e, &i, &j);
         s->block[e / 3][e % 3] = ax_blocks_find(&s->matrix, i, j);
     }
-    s->factor = ax_cholesky_analyse(&s->matrix.matrix, AX_FACTOR_SUPERNODAL);
+    double(*place)[3] = ax_calloc((size_t)s->hinges, sizeof *place);
+    for (int h = 0; h < s->hinges; ++h)
+        memcpy(place[h], s->x[h], 2 * sizeof **place);
+    s->factor = ax_block_factor_make(&s->matrix, (const double(*)[3])place, s->pool);
+    ax_free(place);
 }
 
 static double constraint(const solver* s, const state* x, int e)
@@ -537,7 +542,7 @@ static void solve_step(solver* s, double mu)
             add_scaled(s->step[i], g, y);
             add_scaled(s->step[j], g, -y);
         }
-        ax_cholesky_solve(s->factor, s->step[0], s->step[0], 1);
+        ax_block_factor_solve(s->factor, s->step[0], s->step[0]);
         double left = 0;
         for (int e = 0; e < s->edges; ++e) {
             int i, j;
@@ -577,7 +582,8 @@ static solver make(const ax_joint_problem* problem, double (*flat)[2], double (*
                 .linkage = linkage,
                 .hinges = n,
                 .triangles = linkage->triangle_count,
-                .edges = 3 * linkage->triangle_count};
+                .edges = 3 * linkage->triangle_count,
+                .pool = ax_pool_make(0)};
     for (int e = 0; e < s.edges; ++e) {
         int i, j;
         edge_ends(&s, e, &i, &j);
@@ -639,7 +645,8 @@ static void release(solver* s)
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_blocks_free(&s->matrix);
-    ax_cholesky_free(s->factor);
+    ax_block_factor_free(s->factor);
+    ax_pool_free(s->pool);
 }
 
 ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], double (*deployed)[3],
@@ -661,7 +668,7 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
             break;
         refresh_active(&s);
         assemble(&s, mu);
-        if (!ax_cholesky_factor(s.factor, &s.matrix.matrix))
+        if (!ax_block_factor_run(s.factor, &s.matrix))
             break; // rounding has eaten the stay term: keep the last good state
         ++s.factorisations;
         solve_step(&s, mu);

@@ -32,7 +32,7 @@ static void hold_to_one_thread(void)
     }
 }
 
-ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind)
+ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix)
 {
     hold_to_one_thread();
     ax_cholesky* factor = AX_NEW0(ax_cholesky, 1);
@@ -42,8 +42,7 @@ ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind)
     common->try_catch = 1;
     common->quick_return_if_not_posdef = 1;
     common->final_ll = 1;
-    static const int modes[] = {[AX_FACTOR_SUPERNODAL] = CHOLMOD_SUPERNODAL, [AX_FACTOR_ONCE] = CHOLMOD_AUTO};
-    common->supernodal = modes[kind];
+    common->supernodal = CHOLMOD_AUTO;
     // Measured on Laplacians of surfaces: below some 80 operations per entry (10,000 to 20,000 unknowns) columns are quicker
     // than dense blocks; CHOLMOD's own choice is 40.
     common->supernodal_switch = 80;

@@ -6,13 +6,9 @@
 
 typedef struct ax_cholesky ax_cholesky;
 
-typedef enum ax_factor_kind {
-    AX_FACTOR_SUPERNODAL, // dense blocks: best when factored often
-    AX_FACTOR_ONCE,       // whichever is quicker for one factorisation and a few solves, by the work per entry
-} ax_factor_kind;
-
-// Orders and analyses the pattern of `matrix` (values are not read). Never fails on a sound pattern.
-ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix, ax_factor_kind kind);
+// Orders and analyses the pattern of `matrix` (values are not read), for columns or dense blocks, whichever is quicker for one
+// factorisation and a few solves. Never fails on a sound pattern.
+ax_cholesky* ax_cholesky_analyse(const ax_sparse* matrix);
 void ax_cholesky_free(ax_cholesky* factor);
 
 // Numerical factorisation of a matrix with the analysed pattern. False if it is not positive definite.

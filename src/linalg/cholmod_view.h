@@ -1,4 +1,4 @@
-// A symmetric matrix as CHOLMOD sees it, sharing its arrays.
+// A symmetric matrix as CHOLMOD sees it, sharing its arrays. Without values it is a pattern.
 #pragma once
 
 #include "linalg/sparse.h"
@@ -15,7 +15,7 @@ static inline cholmod_sparse ax_cholmod_view(const ax_sparse* matrix)
                             .x = matrix->value,
                             .stype = -1,
                             .itype = CHOLMOD_INT,
-                            .xtype = CHOLMOD_REAL,
+                            .xtype = matrix->value ? CHOLMOD_REAL : CHOLMOD_PATTERN,
                             .dtype = CHOLMOD_DOUBLE,
                             .sorted = 1,
                             .packed = 1};

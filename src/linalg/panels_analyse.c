@@ -339,7 +339,8 @@ static void measure_stacks(ax_panels* s)
         size_t held = 0;
         for (int k = s->part_node[part]; k < s->part_node[part + 1]; ++k) {
             const ax_supernode* node = s->nodes + s->depth_first[k];
-            size_t front = ax_front_stride(node) * (size_t)(node->width + node->rows);
+            size_t rows = (size_t)(node->width + node->rows), front = ax_front_stride(node) * rows;
+            s->longest[part] = rows > s->longest[part] ? rows : s->longest[part];
             s->front_size[part] = front > s->front_size[part] ? front : s->front_size[part];
             for (int c = node->child; c >= s->part_node[part]; c = s->nodes[c].sibling)
                 held -= ax_update_size(s->nodes + c);

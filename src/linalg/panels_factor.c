@@ -7,10 +7,11 @@
 #include <stdatomic.h>
 #include <string.h>
 
-// Columns eliminated before the rest of the front is updated, and columns that one task updates.
-enum { BLOCK = 64, COLUMNS_PER_TASK = 16, LEAST_SHARED = 128 };
+// Columns eliminated before the rest of the front is updated, columns that one task updates, rows that are updated at once.
+enum { BLOCK = 64, COLUMNS_PER_TASK = 16, LEAST_SHARED = 128, STRIP = AX_FRONT_STRIP };
 
 typedef double v4 __attribute__((vector_size(32)));
+typedef double loose4 __attribute__((vector_size(32), aligned(8)));
 
 typedef struct factoring {
     ax_panels* panels;
@@ -29,6 +30,8 @@ typedef struct front {
     size_t stride;
     int size, from, to; // rows; columns from .. to - 1 are to be subtracted
     int first, block;   // first column to update, columns a task
+    double*
+        packed; // rows from `first` on of the columns to subtract: strips of eight rows, in each column after column
 } front;
 
 // entry[:, j .. j + W) -= sum over k of entry[:, k] entry[j .. j + W, k]. Rows above the diagonal get values that nobody reads.
@@ -82,11 +85,57 @@ static void update_columns(const front* f, int from, int to)
         kernel[to - j < 4 ? to - j : 4](f, j);
 }
 
+static int strip_count(const front* f)
+{
+    return (f->size - f->first + STRIP - 1) / STRIP;
+}
+
+static void pack_strip(void* context, int strip)
+{
+    const front* f = context;
+    int row = f->first + strip * STRIP, rows = f->size - row < STRIP ? f->size - row : STRIP;
+    double* to = f->packed + (size_t)strip * BLOCK * STRIP;
+    for (int k = f->from; k < f->to; ++k, to += STRIP) {
+        const double* from = f->entry + (size_t)k * f->stride + row;
+        for (int r = 0; r < STRIP; ++r)
+            to[r] = r < rows ? from[r] : 0;
+    }
+}
+
+// Four columns from j on, in the rows of one strip: what the kernels above do, in the same order, but reading memory as it lies.
+static void update_strip(const front* f, int strip, int j)
+{
+    int row = f->first + strip * STRIP, depth = f->to - f->from;
+    const double* a = f->packed + (size_t)strip * BLOCK * STRIP;
+    const double* b = f->packed + (size_t)((j - f->first) / STRIP) * BLOCK * STRIP + (j - f->first) % STRIP;
+    double* column = f->entry + (size_t)j * f->stride + row;
+    v4 lower[4], upper[4];
+    for (int c = 0; c < 4; ++c) {
+        lower[c] = *(loose4*)(column + (size_t)c * f->stride);
+        upper[c] = *(loose4*)(column + (size_t)c * f->stride + 4);
+    }
+    for (int k = 0; k < depth; ++k, a += STRIP, b += STRIP) {
+        v4 p = *(const v4*)a, q = *(const v4*)(a + 4);
+        for (int c = 0; c < 4; ++c) {
+            lower[c] -= p * b[c];
+            upper[c] -= q * b[c];
+        }
+    }
+    for (int c = 0; c < 4; ++c) {
+        *(loose4*)(column + (size_t)c * f->stride) = lower[c];
+        *(loose4*)(column + (size_t)c * f->stride + 4) = upper[c];
+    }
+}
+
 static void update_task(void* context, int task)
 {
     const front* f = context;
-    int from = f->first + task * f->block;
-    update_columns(f, from, from + f->block < f->size ? from + f->block : f->size);
+    int from = f->first + task * f->block, to = from + f->block < f->size ? from + f->block : f->size;
+    int fours = from + (to - from) / 4 * 4;
+    for (int strip = (from - f->first) / STRIP; strip < strip_count(f); ++strip)
+        for (int j = from; j < fours; j += 4)
+            update_strip(f, strip, j);
+    update_columns(f, fours, to);
 }
 
 // Columns j .. j + width - 1, up to date with all columns before: their triangle, then the rows below. False: not positive.
@@ -141,8 +190,10 @@ static bool factor_front(front* f, int width, ax_pool* pool)
         f->block = COLUMNS_PER_TASK;
         if (f->size - to < LEAST_SHARED)
             update_columns(f, to, f->size);
-        else
+        else {
+            ax_pool_run(pool, pack_strip, f, strip_count(f));
             ax_pool_run(pool, update_task, f, (f->size - to + f->block - 1) / f->block);
+        }
     }
     return true;
 }
@@ -189,13 +240,15 @@ static void factor_part(void* context, int part)
     factoring* f = context;
     ax_panels* s = f->panels;
     double* entry = ax_alloc_aligned(s->front_size[part], sizeof *entry);
+    double* packed = ax_alloc_aligned(BLOCK * (s->longest[part] + STRIP), sizeof *packed);
     int *local = AX_NEW(int, s->n), *rows = AX_NEW(int, s->n), *place = AX_NEW(int, s->n);
     size_t held = 0;
     f->stack[part] = AX_NEW(double, s->stack_size[part]);
     for (int visit = s->part_node[part]; visit < s->part_node[part + 1] && !atomic_load(&f->failed); ++visit) {
         int k = s->depth_first[visit];
         const ax_supernode* node = s->nodes + k;
-        front own = {.entry = entry, .stride = ax_front_stride(node), .size = node->width + node->rows};
+        front own = {
+            .entry = entry, .stride = ax_front_stride(node), .size = node->width + node->rows, .packed = packed};
         memset(entry, 0, own.stride * (size_t)own.size * sizeof *entry);
         for (int r = 0; r < own.size; ++r)
             local[row_of(s, part, s->index[node->index + r])] = r;
@@ -232,6 +285,7 @@ static void factor_part(void* context, int part)
         held += ax_update_size(node);
     }
     ax_free(entry);
+    ax_free(packed);
     ax_free(local);
     ax_free(rows);
     ax_free(place);

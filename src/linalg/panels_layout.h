@@ -3,7 +3,7 @@
 
 #include "linalg/panels.h"
 
-enum { AX_PANEL_WIDTH = 4, AX_PANEL_PARTS = 8 };
+enum { AX_PANEL_WIDTH = 4, AX_PANEL_PARTS = 8, AX_FRONT_STRIP = 8 };
 
 // Up to four columns of a supernode: their triangle (column by column, diagonal as its reciprocal), then the rows below, row by
 // row. The panels of a supernode share its list of rows.
@@ -36,6 +36,7 @@ struct ax_panels {
     int part_column[AX_PANEL_PARTS + 2], part_node[AX_PANEL_PARTS + 2]; // where each part begins, then the top
     int part_panel[AX_PANEL_PARTS + 2];
     size_t stack_size[AX_PANEL_PARTS + 1], front_size[AX_PANEL_PARTS + 1]; // doubles that factorising a part needs
+    size_t longest[AX_PANEL_PARTS + 1];                                    // rows of its largest front
 };
 
 static inline int ax_panels_top(const ax_panels* s)
@@ -43,10 +44,11 @@ static inline int ax_panels_top(const ax_panels* s)
     return s->n - s->top_first;
 }
 
-// Rows of a front as stored: a whole number of vectors.
+// Rows of a front as stored: a whole number of vectors, and in large ones room for strips that begin anywhere.
 static inline size_t ax_front_stride(const ax_supernode* node)
 {
-    return ((size_t)(node->width + node->rows) + 3) / 4 * 4;
+    size_t size = (size_t)(node->width + node->rows);
+    return (size + (size > 64 ? AX_FRONT_STRIP : 0) + 3) / 4 * 4;
 }
 
 // Entries of what a front leaves for its parent: the lower triangle of its rows below.

@@ -28,7 +28,7 @@ static ax_sparse assemble(const ax_linkage* linkage, const int (*pairs)[2], doub
 
 static ax_cholesky* factor(ax_sparse* matrix)
 {
-    ax_cholesky* made = ax_cholesky_analyse(matrix, AX_FACTOR_ONCE);
+    ax_cholesky* made = ax_cholesky_analyse(matrix);
     bool definite = ax_cholesky_factor(made, matrix);
     assert(definite); // diagonally dominant
     (void)definite;

@@ -161,7 +161,7 @@ static bool solve_complementarity(obstacle* o, const ax_sparse* matrix, const do
         memset(o->trial, 0, (size_t)n * sizeof *o->trial);
         if (count && sound) {
             ax_sparse active = ax_sparse_principal(matrix, index);
-            ax_cholesky* factor = ax_cholesky_analyse(&active, AX_FACTOR_ONCE);
+            ax_cholesky* factor = ax_cholesky_analyse(&active);
             sound = ax_cholesky_factor(factor, &active);
             if (sound)
                 ax_cholesky_solve(factor, part, part, 1);

@@ -1,0 +1,54 @@
+#include "linalg/block_factor.h"
+
+#include "linalg/order.h"
+#include "linalg/panels.h"
+
+struct ax_block_factor {
+    ax_pool* pool;
+    ax_panels* panels;
+    ax_vec4* x; // in elimination order; a solve has one right-hand side, the first lane
+    int unknowns;
+};
+
+ax_block_factor* ax_block_factor_make(const ax_blocks* blocks, const double (*place)[3], ax_pool* pool)
+{
+    ax_block_factor* f = AX_NEW0(ax_block_factor, 1);
+    int size = blocks->size, *node = AX_NEW(int, blocks->n), *order = AX_NEW(int, blocks->matrix.n);
+    ax_sparse graph = {.n = blocks->n, .start = blocks->start, .row = blocks->row};
+    ax_order_by_place(&graph, place, pool, node);
+    for (int u = 0; u < blocks->matrix.n; ++u)
+        order[u] = node[u / size] * size + u % size;
+    f->pool = pool;
+    f->unknowns = blocks->matrix.n;
+    f->panels = ax_panels_analyse(&blocks->matrix, order);
+    f->x = ax_alloc_aligned(ax_panels_rows(f->panels), sizeof *f->x);
+    ax_free(node);
+    ax_free(order);
+    return f;
+}
+
+void ax_block_factor_free(ax_block_factor* f)
+{
+    if (!f)
+        return;
+    ax_panels_free(f->panels);
+    ax_free(f->x);
+    ax_free(f);
+}
+
+bool ax_block_factor_run(ax_block_factor* f, const ax_blocks* blocks)
+{
+    return ax_panels_factor(f->panels, &blocks->matrix, f->pool);
+}
+
+void ax_block_factor_solve(ax_block_factor* f, const double* b, double* x)
+{
+    const int* order = ax_panels_order(f->panels);
+    for (int k = 0; k < f->unknowns; ++k) {
+        f->x[k][0] = b[order[k]];
+        f->x[k][1] = f->x[k][2] = f->x[k][3] = 0;
+    }
+    ax_panels_solve(f->panels, f->pool, f->x);
+    for (int k = 0; k < f->unknowns; ++k)
+        x[order[k]] = f->x[k][0];
+}
