@@ -71,7 +71,7 @@ static void hang_net(const ax_form* f, ax_mesh* net, double* sunk)
             ax_entries_add(&entries, i, j, -1);
         }
     ax_sparse matrix = ax_entries_sparse(&entries, v);
-    ax_cholesky* factor = ax_cholesky_analyse(&matrix, AX_FACTOR_ONCE);
+    ax_cholesky* factor = ax_cholesky_analyse(&matrix);
     bool definite = ax_cholesky_factor(factor, &matrix);
     assert(definite); // connected, and held at the rim
     (void)definite;
