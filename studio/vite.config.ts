@@ -9,6 +9,7 @@ export default defineConfig({
     base: studio ? studio.pathname : "./",
     oxc: { jsx: { runtime: "automatic", importSource: "preact" } },
     build: { target: "es2022", assetsInlineLimit: 0, modulePreload: { polyfill: false }, chunkSizeWarningLimit: 1200 },
+    worker: { format: "es" },
     server: {
         host: "127.0.0.1",
         proxy: studio && to ? { "/ws": { ...to, ws: true }, [`${studio.pathname}upload`]: to, [`${studio.pathname}file`]: to } : {},

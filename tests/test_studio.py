@@ -507,6 +507,7 @@ class Safety(StudioCase):
         policy = headers["Content-Security-Policy"]
         self.assertIn("default-src 'none'", policy)
         self.assertNotIn("unsafe-inline", policy)
+        self.assertNotIn("'unsafe-eval'", policy)
         self.assertEqual((headers["X-Content-Type-Options"], headers["Referrer-Policy"]), ("nosniff", "no-referrer"))
         right, studio.secret = studio.secret, "a" * len(studio.secret)
         for path in ("/", "/file/x", "/index.html"):

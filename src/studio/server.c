@@ -81,13 +81,16 @@ static bool origin_allowed(const ax_studio* s, struct lws* wsi, bool must)
 
 // ---- answers over HTTP --------------------------------------------------------------------------------------------------------
 
+static const char page_policy[] =
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; font-src 'self'; "
+    "img-src 'self' blob: data:; connect-src 'self'; worker-src 'self' blob:; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'";
+// rhino3dm binds its classes with `new Function`. It runs in a worker of its own, which has this policy and sees no page.
+static const char rhino_policy[] = "default-src 'none'; script-src 'self' 'unsafe-eval'; connect-src 'self'";
+
 static const struct {
     const char *name, *value;
 } headers[] = {
-    {"content-security-policy:",
-     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; font-src 'self'; "
-     "img-src 'self' blob: data:; connect-src 'self'; worker-src 'self' blob:; base-uri 'none'; "
-     "form-action 'none'; frame-ancestors 'none'"},
     {"x-content-type-options:", "nosniff"},
     {"referrer-policy:", "no-referrer"},
     {"cross-origin-opener-policy:", "same-origin"},
@@ -96,10 +99,13 @@ static const struct {
 };
 
 // Headers, and the body after them if it is short. Nonzero when the connection is to be closed.
-static int respond(struct lws* wsi, unsigned status, const char* type, size_t size, const char* name, const void* body)
+static int respond_under(const char* policy, struct lws* wsi, unsigned status, const char* type, size_t size,
+                         const char* name, const void* body)
 {
     unsigned char block[LWS_PRE + HEADER_ROOM], *start = block + LWS_PRE, *at = start, *end = block + sizeof block - 1;
-    if (lws_add_http_common_headers(wsi, status, type, size, &at, end))
+    if (lws_add_http_common_headers(wsi, status, type, size, &at, end) ||
+        lws_add_http_header_by_name(wsi, (const unsigned char*)"content-security-policy:", (const unsigned char*)policy,
+                                    (int)strlen(policy), &at, end))
         return -1;
     for (size_t k = 0; k < sizeof headers / sizeof *headers; ++k)
         if (lws_add_http_header_by_name(wsi, (const unsigned char*)headers[k].name,
@@ -126,6 +132,11 @@ static int respond(struct lws* wsi, unsigned status, const char* type, size_t si
     return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
+static int respond(struct lws* wsi, unsigned status, const char* type, size_t size, const char* name, const void* body)
+{
+    return respond_under(page_policy, wsi, status, type, size, name, body);
+}
+
 static int refuse(struct lws* wsi, unsigned status, const char* words)
 {
     return respond(wsi, status, "text/plain; charset=utf-8", strlen(words), NULL, words);
@@ -134,7 +145,8 @@ static int refuse(struct lws* wsi, unsigned status, const char* words)
 static int send_page_file(struct lws* wsi, connection* c, const page_file* file)
 {
     *c = (connection){.kind = CONNECTION_DOWNLOAD, .at = file->bytes, .end = file->end, .file = -1};
-    if (respond(wsi, 200, file->type, (size_t)(file->end - file->bytes), NULL, NULL))
+    const char* policy = strncmp(file->name, "assets/rhino-worker", 19) == 0 ? rhino_policy : page_policy;
+    if (respond_under(policy, wsi, 200, file->type, (size_t)(file->end - file->bytes), NULL, NULL))
         return -1;
     lws_callback_on_writable(wsi);
     return 0;

@@ -4,6 +4,7 @@ import { spawnSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
+import rhino3dm from "rhino3dm/rhino3dm.module.js";
 import { Hand, Studio } from "./studio.mjs";
 
 const root = process.env.AUXSHELL_ROOT;
@@ -392,6 +393,27 @@ export const scenarios = {
                 await hand.key("Control+Alt+n");
                 await check("start");
             }, { ...options, reducedMotion: "reduce", bypassCSP: true });
+    },
+
+    async "a Rhino document is made in the page, under its policy, and holds every panel by its name"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            await hand.key("Control+e");
+            await hand.page.getByRole("radio", { name: /\.3dm$/ }).click();
+            const download = hand.page.waitForEvent("download");
+            await hand.page.getByRole("dialog").getByRole("button", { name: /^Export/ }).click();
+            const file = await download;
+            assert.match(file.suggestedFilename(), /\.3dm$/);
+            const rhino = await rhino3dm();
+            const read = rhino.File3dm.fromByteArray(readFileSync(await file.path()));
+            const panels = { flat: new Set(), deployed: new Set() };
+            for (let k = 0; k < read.objects().count; ++k) {
+                const attributes = read.objects().get(k).attributes();
+                const [state, row] = read.layers().get(attributes.layerIndex).fullPath.split("::");
+                if (row !== "supports") panels[state]?.add(attributes.name);
+            }
+            const names = await hand.page.evaluate(() => auxshell.shell().names);
+            for (const state of ["flat", "deployed"]) assert.deepEqual([...panels[state]].sort(), [...names].sort(), state);
+        });
     },
 
     async "the tour has five steps, once"(browser) {

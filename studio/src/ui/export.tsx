@@ -6,6 +6,7 @@ import { CommandError } from "../protocol/link";
 import { ask, currentShell, documentState, hello, report, revision, status } from "../state/session";
 import { download, savePicture } from "../state/commands";
 import { record } from "../state/video";
+import { saveRhino } from "../rhino/save";
 import { dialog } from "../state/view";
 import { Button, Choice, Dialog, NumberRow, Row, Section } from "./controls";
 import { bytes, count, plural } from "./format";
@@ -20,9 +21,10 @@ const groups: { title: string; endings: RegExp }[] = [
 const dotted = (e: Exporter) => (e.ending.startsWith(".") ? e.ending : `.${e.ending}`);
 /** What the page makes itself. */
 const ownFormats = [
-    { id: "picture", title: "PNG of the view", side: "screen", doc: "The views as they are now, as one PNG.", run: savePicture },
-    { id: "turntable", title: "Turntable", side: "video", doc: "The deployed shell turned once round, twelve seconds, as WebM.", run: () => record("turntable") },
-    { id: "deployment", title: "Deployment", side: "video", doc: "The states that the solver goes through from flat to deployed, as WebM.", run: () => record("deployment") },
+    { id: "rhino", group: "Model", title: "Rhino document", side: ".3dm", doc: "All states, panels named, on layers of their rows; Rhino 7 and later.", run: saveRhino },
+    { id: "picture", group: "Picture", title: "PNG of the view", side: "screen", doc: "The views as they are now, as one PNG.", run: savePicture },
+    { id: "turntable", group: "Picture", title: "Turntable", side: "video", doc: "The deployed shell turned once round, twelve seconds, as WebM.", run: () => record("turntable") },
+    { id: "deployment", group: "Picture", title: "Deployment", side: "video", doc: "The states that the solver goes through from flat to deployed, as WebM.", run: () => record("deployment") },
 ];
 const isCut = (ending: string) => groups[0].endings.test(ending);
 /** A cut file as it is looked at: lines of a tenth of a millimetre on metres of sheet would not be seen. */
@@ -96,8 +98,17 @@ export function ExportDialog() {
     const exportNow = async () => {
         const own = ownFormats.find((o) => o.id === ending.value);
         if (own) {
-            dialog.value = null;
-            await own.run();
+            wrong.value = "";
+            busy.value = true;
+            try {
+                if (own.group === "Picture") dialog.value = null; // they show the view
+                await own.run();
+                dialog.value = null;
+            } catch (error) {
+                wrong.value = error instanceof CommandError ? error.problem.message : String(error);
+            } finally {
+                busy.value = false;
+            }
             return;
         }
         const list = await run();
@@ -119,7 +130,8 @@ export function ExportDialog() {
                 <div class="formats" role="radiogroup" aria-label="Format">
                     {groups.map((g) => {
                         const all = exporters.filter((e) => g.endings.test(dotted(e)));
-                        if (!all.length && g.title !== "Picture") return null;
+                        const own = ownFormats.filter((o) => o.group === g.title);
+                        if (!all.length && !own.length) return null;
                         return (
                             <div key={g.title}>
                                 <h3>{g.title}</h3>
@@ -128,7 +140,7 @@ export function ExportDialog() {
                                         {/^[a-z]+ /.test(e.name) ? e.name.charAt(0).toUpperCase() + e.name.slice(1) : e.name}<span>{dotted(e)}</span>
                                     </button>
                                 ))}
-                                {g.title === "Picture" && ownFormats.map((o) => <button key={o.id} type="button" role="radio" aria-checked={ending.value === o.id} onClick={() => (ending.value = o.id)}>{o.title}<span>{o.side}</span></button>)}
+                                {own.map((o) => <button key={o.id} type="button" role="radio" aria-checked={ending.value === o.id} onClick={() => (ending.value = o.id)}>{o.title}<span>{o.side}</span></button>)}
                             </div>
                         );
                     })}
