@@ -21,7 +21,7 @@ trap 'rm -rf "$scratch"' EXIT
 for page in 2:layout 4:steps 7:frame; do
   pdftoppm -r 60 -png -singlefile -f "${page%:*}" "$scratch/kidney.plan.pdf" "$root/docs/pictures/plan-${page#*:}"
 done
-for name in hybrid-shell pavilion pavilion-middle pavilion-inner; do
+for name in hybrid-shell pavilion cladding mars-habitat pavilion-middle pavilion-inner; do
   "$bin/auxshell" run "$root/examples/$name.json" -o "$scratch/$name.auxshell" >/dev/null
 done
 "$bin/auxshell" shade "$scratch/pavilion.auxshell" "$scratch/pavilion-middle.auxshell" "$scratch/pavilion-inner.auxshell" \
@@ -29,6 +29,8 @@ done
   --arrange --shift 0.8 --png "$root/docs/pictures/shade-pavilion.png" >/dev/null
 "$bin/auxshell" export "$scratch/hybrid-shell.auxshell" -o "$scratch/hybrid-shell.plan.pdf" --date none >/dev/null
 pdftoppm -r 60 -png -singlefile -f 13 "$scratch/hybrid-shell.plan.pdf" "$root/docs/pictures/plan-arch"
+"$bin/make_figure_5" "$scratch/figure-5.png" "$scratch"/{pavilion,cladding,mars-habitat,hybrid-shell}.auxshell
+cwebp -quiet -q 88 "$scratch/figure-5.png" -o "$root/docs/pictures/figure-5.webp"
 mkdir "$scratch/frames"
 "$bin/make_deployment" "$root/examples/mars-habitat.json" "$scratch/frames" 42 640 400 >/dev/null
 frames=("$scratch"/frames/*.png)
