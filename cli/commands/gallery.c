@@ -77,11 +77,16 @@ static int is_recipe(const struct dirent* entry)
     return length >= sizeof ending && strcmp(entry->d_name + length - strlen(ending), ending) == 0;
 }
 
-// Names of the recipes in the folder, sorted; `count` < 0 if it cannot be read. Freed by free_names.
+static int by_name(const void* a, const void* b)
+{
+    return strcmp(*(char* const*)a, *(char* const*)b);
+}
+
+// Names of the recipes in the folder, sorted without their endings; `count` < 0 if it cannot be read. Freed by free_names.
 static char** list_names(const char* folder, int* count)
 {
     struct dirent** entries;
-    *count = scandir(folder, &entries, is_recipe, alphasort);
+    *count = scandir(folder, &entries, is_recipe, NULL);
     char** names = AX_NEW0(char*, *count > 0 ? *count : 1);
     for (int k = 0; k < *count; ++k) {
         size_t length = strlen(entries[k]->d_name) - strlen(ending);
@@ -91,6 +96,8 @@ static char** list_names(const char* folder, int* count)
     }
     if (*count >= 0)
         free(entries);
+    if (*count > 1)
+        qsort(names, (size_t)*count, sizeof *names, by_name);
     return names;
 }
 
