@@ -17,6 +17,16 @@ from support.command import AUXSHELL, QUICK, ROOT, SURFACES, CommandCase, run, w
 DOME, SADDLE, HEMISPHERE = SURFACES / "ellipse_dome.obj", SURFACES / "saddle.obj", SURFACES / "hemisphere.obj"
 
 
+def wait_for_handler(process, number):
+    """Until the program catches the signal: before, it would die of it, as any program that has not begun."""
+    status = Path(f"/proc/{process.pid}/status")
+    while process.poll() is None:
+        caught = next(line for line in status.read_text().splitlines() if line.startswith("SigCgt"))
+        if int(caught.split()[1], 16) >> (number - 1) & 1:
+            return
+        time.sleep(0.005)
+
+
 class Usage(CommandCase):
     def test_alone_it_prints_the_help(self):
         for words in ((), ("--help",), ("-h",)):
@@ -282,6 +292,7 @@ class Trouble(CommandCase):
                 with self.subTest(signal=number, delay=delay):
                     process = subprocess.Popen([AUXSHELL, "design", DOME, "-o", self.folder / "b.auxshell",
                                                 "--triangles", count], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                    wait_for_handler(process, number)
                     time.sleep(delay)
                     process.send_signal(number)
                     sent = time.monotonic()
@@ -297,6 +308,7 @@ class Trouble(CommandCase):
         content = document.read_bytes()
         process = subprocess.Popen([AUXSHELL, "simulate", document, "--load", "gravity"], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE)
+        wait_for_handler(process, signal.SIGINT)
         time.sleep(0.3)
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)

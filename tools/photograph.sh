@@ -39,6 +39,8 @@ case ${1:-} in
             if [[ $word == @* ]]; then # a design of the examples
                 "$auxshell" run "$root/examples/${word#@}.json" -o "$scratch/${word#@}.auxshell" >/dev/null
                 word=$scratch/${word#@}.auxshell
+            elif [[ $word == *.obj ]]; then
+                word=$root/examples/$word
             fi
             words+=("$word")
         done

@@ -202,7 +202,7 @@ typedef struct ax_fabricate_options {
     double spacing;            // mm, least distance of neighbours that are packed; at least the kerf is kept
     double kerf;               // mm, full width of the beam: outlines grow by half of it, holes shrink. 0: none
     bool clearance;            // prove clearance (takes longer than the rest)
-    int frames;                  // with it: states between flat and open to prove it in, 0 to 1000
+    int frames;                // with it: states between flat and open to prove it in, 0 to 1000
     int sizes;                 // of panels that the schedule proposes, at most; 0: see ax_cluster_within
     const char* title;         // for notes, NULL: none
     // of the recipe, as it shall be printed, NULL: none. Never the day of export: the same design gives the same bytes

@@ -35,7 +35,7 @@ def arguments():
     parser.add_argument("--people", type=int, default=0, help="figures of 1.72 m for scale")
     parser.add_argument("--balloon", action="store_true", help="what blows the shell up: a skin beneath it")
     parser.add_argument("--layers", nargs="*", default=[], help="more documents, drawn in the same place")
-    parser.add_argument("--reference", help="OBJ of what stands there, in the design's unit")
+    parser.add_argument("--reference", nargs="*", default=[], help="OBJ files of what stands there, in the design's unit")
     parser.add_argument("--threads", type=int, default=0)
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
 
@@ -145,7 +145,7 @@ class Shell:
     def __init__(self, path, state):
         with open(path, encoding="utf-8") as file:
             design = json.load(file)
-        scale = METRES.get(design["units"], 1.0)
+        self.metres = scale = METRES.get(design["units"], 1.0)
         points = design.get(state) or design["deployed"]
         self.points = [Vector((*p, 0.0)[:3]) * scale for p in points]
         self.flat = [Vector((*p[:2], 0.0)) * scale for p in design["flat"]]
@@ -467,11 +467,12 @@ def main():
         add_frame(shell, ground, options.posts if shell is shells[0] else 0, steel)
         if options.balloon:
             add_balloon(shell, 0.09 * shell.edge, plain("rubber", (0.42, 0.035, 0.03), 0.3))
-    if options.reference:
-        bpy.ops.import_scene.obj(filepath=options.reference, axis_forward="Y", axis_up="Z")
+    for path in options.reference:
+        bpy.ops.import_scene.obj(filepath=path, axis_forward="Y", axis_up="Z")
         for item in bpy.context.selected_objects:
+            item.scale = [shells[0].metres] * 3
             item.data.materials.clear()
-            item.data.materials.append(plain("reference", (0.55, 0.55, 0.55), 0.8))
+            item.data.materials.append(plain("reference", (0.62, 0.61, 0.59), 0.8))
     seen = points + [Vector((p.x, p.y, ground)) for p in points] if options.lift else points
     eye = add_camera(seen, options)
     add_people(options.people, points, ground, eye, plain("figure", (0.16, 0.165, 0.18), 0.65))
