@@ -324,7 +324,7 @@ class Documents(StudioCase):
         studio.stop(signal.SIGKILL)
         again = self.start(steps=None)
         page = self.page(again, joined=False)
-        self.assertEqual([found["name"] for found in page.hello["recovered"]], [draft])
+        self.assertEqual([(found["name"], found["title"]) for found in page.hello["recovered"]], [(draft, "dome")])
         self.agree(page.ask("join", document=draft))
         page.until(lambda: page.frames)
         page.rest()
@@ -463,6 +463,23 @@ class Documents(StudioCase):
             self.assertFalse(page.ask("export", ending=".svg", **wrong)["ok"], wrong)
         recipe_file, = self.agree(page.ask("export", ending=".recipe.json"))["files"]
         self.assertEqual(len(json.loads(studio.request("GET", "/" + recipe_file["url"])[2])["operators"]), 4)
+        self.page(studio)  # whoever comes now finds a state at rest
+
+    def test_whoever_waits_for_a_document_hears_how_far_it_is(self):
+        page = self.page(self.start())
+        page.events.pop("progress", None)
+        heard = []
+        page.number += 1
+        page.tell("new", id=page.number, recipe=[dict(DOME[0], triangles=2000 if QUICK else 12000), *DOME[1:]])
+        message = None
+        while not isinstance(message, dict) or message.get("re") != page.number or "ok" not in message:
+            message = page.read()
+            if isinstance(message, dict) and message.get("event") == "progress":
+                heard.append(message)
+        self.assertTrue(message["ok"], message)
+        self.assertTrue(heard, "nothing was said")
+        self.assertTrue(all(0 <= progress["fraction"] <= 1 for progress in heard))
+        page.until(lambda: page.events.get("progress", {}).get("done"))
 
 
 class Surfaces(StudioCase):

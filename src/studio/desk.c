@@ -216,6 +216,8 @@ static double publish(desk* d, bool whole)
         shape_put_rest(b, &v, &measures);
         shape_put_exact(b, &v, form, exact);
     }
+    if (b->stamp != before) // flags alone are no other state
+        ++b->revision;
     b->flags = (exact ? FRAME_EXACT : 0) |
                (d->moving || d->busy ? FRAME_MOVING
                 : d->live_shown      ? 0
@@ -225,8 +227,6 @@ static double publish(desk* d, bool whole)
     if (d->shown_serial != d->hand_serial || flags != b->flags)
         ++b->stamp; // a frame without sections tells it
     d->shown_serial = d->hand_serial;
-    if (b->stamp != before)
-        ++b->revision;
     hub_unlock(d->hub);
     hub_wake(d->hub);
     shape_measures_free(&measures);
@@ -265,8 +265,10 @@ static void post_status(desk* d, const char* solver)
         snprintf(words, sizeof words, "Solving, edges within %.0e", residual);
     else if (exact)
         snprintf(words, sizeof words, "Exact");
-    else
+    else if (d->settle_time > 0)
         snprintf(words, sizeof words, "%s, %.0f ms", r->settled ? "Settled" : "At rest", 1e3 * d->settle_time);
+    else // nothing has moved since it was opened
+        snprintf(words, sizeof words, "%s", r->settled ? "Settled" : "At rest");
     post(d, SLOT_STATUS,
          json_pack("{s:s, s:s, s:s, s:i, s:o, s:o, s:i, s:s}", "event", "status", "solver", solver, "state", state,
                    "iterations", r->iterations, "milliseconds", describe_number(1e3 * d->update_time), "residual",
@@ -343,8 +345,10 @@ static bool report_progress(void* context, const char* stage, double fraction, d
 {
     desk* d = context;
     double now = ax_seconds();
-    if (desk_form(d) && !d->live_shown && now - d->published >= frame_seconds)
+    if (desk_form(d) && !d->live_shown && now - d->published >= frame_seconds) {
         publish(d, now - d->measured > rest_seconds);
+        d->rested = false; // it was shown as moving
+    }
     if (now - d->job_start > progress_seconds && now - d->progressed > 0.1) {
         d->progressed = now;
         post(d, SLOT_PROGRESS,

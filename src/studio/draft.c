@@ -1,5 +1,6 @@
 #include "studio/draft.h"
 
+#include "base/file.h"
 #include "studio/files.h"
 
 #include <dirent.h>
@@ -13,7 +14,7 @@
 
 enum { NAME_LETTERS = 8, LIST_MOST = 32 };
 static const char prefix[] = "draft-";
-static const char ending[] = ".auxshell";
+static const char ending[] = ".auxshell", title_ending[] = ".title";
 
 ax_status draft_new_id(char id[DRAFT_ID], ax_error* error)
 {
@@ -36,11 +37,39 @@ static void folder(char path[PATH_MAX])
         snprintf(path, PATH_MAX, "%s/.local/state/auxshell", home && *home ? home : "/tmp");
 }
 
-static void file(const char* id, char path[PATH_MAX + 64])
+static void file_of(const char* id, const char* ends, char path[PATH_MAX + 64])
 {
     char in[PATH_MAX];
     folder(in);
-    snprintf(path, PATH_MAX + 64, "%s/%s%s", in, id, ending);
+    snprintf(path, PATH_MAX + 64, "%s/%s%s", in, id, ends);
+}
+
+static void file(const char* id, char path[PATH_MAX + 64])
+{
+    file_of(id, ending, path);
+}
+
+void draft_set_title(const char* id, const char* title)
+{
+    char path[PATH_MAX + 64];
+    ax_file out;
+    file_of(id, title_ending, path);
+    if (ax_file_begin(&out, path, NULL) != AX_OK)
+        return; // a title is not worth a failure
+    fputs(title, out.stream);
+    ax_file_commit(&out, NULL);
+}
+
+void draft_title(const char* id, char title[DRAFT_TITLE])
+{
+    char path[PATH_MAX + 64];
+    file_of(id, title_ending, path);
+    FILE* in = is_id(id) ? fopen(path, "r") : NULL;
+    if (!in || !fgets(title, DRAFT_TITLE, in))
+        strcpy(title, "Unsaved design");
+    title[strcspn(title, "\n")] = 0;
+    if (in)
+        fclose(in);
 }
 
 bool draft_exists(const char* id)
@@ -90,6 +119,8 @@ ax_status draft_folder(const char* id, char** path, ax_error* error)
 static void remove_draft(const char* id, bool with_files)
 {
     char path[PATH_MAX + 64];
+    file_of(id, title_ending, path);
+    unlink(path);
     file(id, path);
     unlink(path);
     path[strlen(path) - strlen(ending)] = 0;
@@ -132,9 +163,13 @@ json_t* draft_list(void)
         if (length <= strlen(ending) || strcmp(entry->d_name + length - strlen(ending), ending) != 0)
             continue;
         snprintf(id, sizeof id, "%.*s", (int)(length - strlen(ending)), entry->d_name);
-        if (is_id(id) && fstatat(dirfd(open), entry->d_name, &about, 0) == 0)
-            rows[count++] =
-                json_pack("{s:s, s:s, s:I}", "name", id, "title", "Unsaved design", "time", (json_int_t)about.st_mtime);
+        if (!is_id(id) || fstatat(dirfd(open), entry->d_name, &about, 0) != 0)
+            continue;
+        char title[DRAFT_TITLE];
+        draft_title(id, title);
+        json_t* words = json_string(title); // NULL where a damaged file is no text
+        rows[count++] = json_pack("{s:s, s:o, s:I}", "name", id, "title", words ? words : json_string("Unsaved design"),
+                                  "time", (json_int_t)about.st_mtime);
     }
     if (open)
         closedir(open);

@@ -22,6 +22,7 @@ struct hub_client {
     int under_way;
     // what of the shown desk was sent already
     unsigned stamp, topology, events[SLOT_COUNT];
+    unsigned opening_progress; // number of the last progress event of the document it waits for
 };
 
 struct hub {
@@ -213,7 +214,11 @@ void hub_show(hub* h, int number, desk* d)
     c->stamp = c->topology = 0;
     c->under_way = 0;
     memset(c->events, 0, sizeof c->events);
-    desk_event(d, SLOT_PROGRESS, &c->events[SLOT_PROGRESS]); // of work that may be long done
+    if (c->opening_progress)
+        c->events[SLOT_PROGRESS] = c->opening_progress; // its end is still to be told
+    else
+        desk_event(d, SLOT_PROGRESS, &c->events[SLOT_PROGRESS]); // of work that may be long done
+    c->opening_progress = 0;
 }
 
 void hub_say_bye(hub* h, const char* words)
@@ -245,6 +250,20 @@ static bool next_event(hub* h, hub_client* c, parcel* out)
     return false;
 }
 
+// How far the document is that the client waits for; what it shows meanwhile is another.
+static bool next_progress(hub* h, hub_client* c, parcel* out)
+{
+    unsigned number = 0;
+    const char* text = c->opening ? desk_event(c->opening, SLOT_PROGRESS, &number) : NULL;
+    if (!text || number == c->opening_progress)
+        return false;
+    if (out) {
+        c->opening_progress = number;
+        *out = text_parcel(h, text);
+    }
+    return true;
+}
+
 static bool next_frame(hub* h, hub_client* c, parcel* out)
 {
     const board* b = desk_board(c->shown);
@@ -269,7 +288,7 @@ static bool next_frame(hub* h, hub_client* c, parcel* out)
 // What a command caused goes before its answer, and answers before frames, of which there may be no end.
 static bool next(hub* h, hub_client* c, parcel* out)
 {
-    if (c->shown && next_event(h, c, out))
+    if (next_progress(h, c, out) || (c->shown && next_event(h, c, out)))
         return true;
     if (c->first) {
         if (out) {
@@ -403,6 +422,7 @@ static ax_status open_desk(hub* h, hub_client* c, int re, const char* id, desk_s
     h->desks[place] = desk_open(h, id, source, c ? c->number : 0, re);
     if (c) {
         c->opening = h->desks[place];
+        c->opening_progress = 0;
         ++c->waiting;
     }
     return AX_OK;

@@ -448,8 +448,14 @@ ax_status job_open(desk* d, ax_error* error)
     ax_status status = draft_path(d->id, &d->path, error);
     if (status != AX_OK)
         return status;
-    if (from->draft)
+    if (from->draft) {
+        char title[DRAFT_TITLE];
+        draft_title(d->id, title);
+        ax_free(d->name);
+        d->name = text_copy(title);
         return open_session(d, error);
+    }
+    draft_set_title(d->id, d->name);
     if (document) {
         status = copy_file(from->path, d->path, false, error);
         return status == AX_OK ? open_session(d, error) : status;
