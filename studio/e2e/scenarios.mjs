@@ -118,7 +118,15 @@ export const scenarios = {
 
             await hand.key("Control+e");
             await page.getByRole("radio", { name: /\.svg$/ }).click();
+            const dialog = page.getByRole("dialog");
+            await dialog.getByLabel("Joint").selectOption("ring");
+            await dialog.getByLabel("Material").selectOption("plywood-6");
+            await dialog.getByLabel("Hole", { exact: true }).last().fill("8");
+            await page.keyboard.press("Enter");
+            await dialog.getByRole("row", { name: /^Ring, / }).waitFor({ timeout: 60000 });
+            await dialog.getByRole("button", { name: /^Export/, disabled: false }).waitFor();
             const svg = await exported(hand, /\.svg$/);
+            assert.match(svg, /hole/i, "panels have holes for the rings");
             assert.match(svg, /<svg/);
             assert.equal((svg.match(/id="cut-/g) ?? []).length, (await hand.figures()).panels, "one outline for every panel");
             if (await page.getByRole("dialog").isVisible()) await page.getByRole("radio", { name: /[^e]\.json$/ }).click();
@@ -290,6 +298,29 @@ export const scenarios = {
             await other.atIs(1);
             await hand.sameAs(other);
             assert.deepEqual(other.errors, []);
+        });
+    },
+
+    async "a rim on a circle is widened by its handle: one step, undone at once"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            await hand.key("c");
+            assert.equal(await page.getByRole("complementary").getByLabel("Radius", { exact: true }).last().inputValue(), "5.50");
+            const at = (x) => page.evaluate((x) => {
+                const stage = auxshell.stage.value;
+                const view = stage.views.deployed;
+                const [ox, oy, oz] = auxshell.shell().origin;
+                const p = stage.project(view, view.orbit.camera.position.clone().set(x - ox, -oy, -oz));
+                const r = stage.canvas.getBoundingClientRect();
+                return [r.left + p.x, r.top + p.y];
+            }, x);
+            await hand.drag(await at(-5.5), await at(-5.8), 6);
+            await hand.atIs(5);
+            const last = await page.evaluate(() => auxshell.session.documentState.value.steps.at(-1).operator);
+            assert.equal(last.op, "rim_circle");
+            assert.ok(last.radius > 5.6 && last.radius < 6, `radius ${last.radius}`);
+            await hand.key("Control+z");
+            await hand.atIs(4);
         });
     },
 

@@ -46,6 +46,29 @@ export interface Exporter {
 }
 export type StateName = "flat" | "deployed" | "simulated";
 
+export interface Named {
+    name: string;
+    doc: string;
+}
+/** What cut files can be made for; lengths in mm. */
+export interface Making {
+    joints: (Named & { parameters: { name: string; unit: string; doc: string; lo: number; hi: number; default: number | null }[] })[];
+    materials: (Named & { thickness: number; kerf: number })[];
+    sheets: { name: string; width: number; height: number }[];
+    profiles: Named[];
+}
+/** Of a cut file: metres, seconds, kilograms, a share of the sheets. */
+export interface Plan {
+    sheets: number;
+    cut_length: number;
+    seconds: number;
+    mass: number;
+    utilisation: number;
+    clashes: number;
+    seams: number;
+    parts: { name: string; count: number }[];
+}
+
 export interface Hello {
     event: "hello";
     protocol: number;
@@ -55,6 +78,7 @@ export interface Hello {
     start: string;
     operators: OperatorSchema[];
     exporters: Exporter[];
+    making: Making;
     examples: { name: string; title: string; doc: string }[];
     recovered: { name: string; title?: string; time: number }[];
     limits: { message: number; upload: number; triangles: number };

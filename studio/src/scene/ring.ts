@@ -25,7 +25,7 @@ export function ringAround(stage: Stage, hit: SkinPoint, radius: number): Ring |
 }
 
 /** The ring in a view: white within a dark halo, at a third of its weight where the surface faces away. */
-export function drawRing(context: CanvasRenderingContext2D, stage: Stage, view: View, ring: Ring, style: { inner: number; dashed: boolean; minus: boolean }): void {
+export function drawRing(context: CanvasRenderingContext2D, stage: Stage, view: View, ring: Ring, style: { inner: number; dashed: boolean; minus: boolean; weight: number }): void {
     const skin = stage.skins?.[view.state];
     if (!skin) return;
     const place = new THREE.Vector3();
@@ -61,7 +61,7 @@ export function drawRing(context: CanvasRenderingContext2D, stage: Stage, view: 
     context.fill();
     context.lineCap = "round";
     for (const away of [true, false]) {
-        context.globalAlpha = away ? 0.35 : 1;
+        context.globalAlpha = style.weight * (away ? 0.35 : 1);
         if (style.dashed) context.setLineDash([6, 5]);
         path(1, away);
         context.lineWidth = 4.5;
@@ -82,7 +82,7 @@ export function drawRing(context: CanvasRenderingContext2D, stage: Stage, view: 
         }
     }
     if (style.minus) {
-        context.globalAlpha = 1;
+        context.globalAlpha = style.weight;
         context.beginPath();
         context.moveTo(centre.x - 6, centre.y);
         context.lineTo(centre.x + 6, centre.y);

@@ -212,6 +212,8 @@ export async function command(name: string, parameters: Record<string, unknown> 
     } catch (error) {
         showProblem(error, name);
         return null;
+    } finally {
+        if (name === "new" || name === "open") progress.value = null; // of a document that may never have come
     }
 }
 

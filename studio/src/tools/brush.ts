@@ -3,7 +3,9 @@
 import { signal } from "@preact/signals";
 import * as THREE from "three";
 import { apply, currentShell, operatorNamed, preview } from "../state/session";
+import { boundsOf } from "../panels/linkage";
 import { drawRing, ringAround } from "../scene/ring";
+import type { Skin, SkinPoint } from "../scene/skin";
 import { length, number } from "../ui/format";
 import { argumentsOf, callOf, numberOf, setArgument, sheetRadius } from "./calls";
 import { type Hit, type Tool, pointer } from "./tool";
@@ -57,6 +59,32 @@ function add(hit: Hit): boolean {
 function round(v: number): number {
     const step = 10 ** Math.floor(Math.log10(brushRadius()) - 4);
     return Number((Math.round(v / step) * step).toPrecision(12));
+}
+
+/** The pointer's place and those that symmetry makes of it, as the operator does: mirrored in a line through the centre, then turned. */
+function copiesOf(sheet: Skin, on: SkinPoint): SkinPoint[] {
+    const args = argumentsOf("paint");
+    const fields = operatorNamed("paint")?.fields ?? [];
+    const value = (name: string) => args[name] ?? fields.find((f) => f.name === name)?.default;
+    const folds = Math.max(1, Number(value("copies") ?? 1));
+    const mirror = value("mirror") === true;
+    if (folds === 1 && !mirror) return [on];
+    const given = value("centre") as number[] | null | undefined;
+    const { min, max } = boundsOf(sheet.places);
+    const [x0, y0] = Array.isArray(given) ? given : [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2];
+    const p = sheet.carry(on, new THREE.Vector3());
+    const twice = (2 * Number(value("mirror_angle") ?? 0) * Math.PI) / 180;
+    const places = [[p.x - x0, p.y - y0]];
+    if (mirror) places.push([Math.cos(twice) * places[0][0] + Math.sin(twice) * places[0][1], Math.sin(twice) * places[0][0] - Math.cos(twice) * places[0][1]]);
+    const found = [on];
+    for (let k = 0; k < folds; k++)
+        for (const [j, [x, y]] of places.entries()) {
+            if (k === 0 && j === 0) continue;
+            const [c, s] = [Math.cos((2 * Math.PI * k) / folds), Math.sin((2 * Math.PI * k) / folds)];
+            const at = sheet.nearest(new THREE.Vector3(x0 + c * x - s * y, y0 + s * x + c * y, 0));
+            if (at) found.push(at);
+        }
+    return found;
 }
 
 export const brush: Tool = {
@@ -129,10 +157,12 @@ export const brush: Tool = {
     overlay(context, stage) {
         const hit = pointer.value;
         if (!hit?.on || !stage.skins) return;
-        const ring = ringAround(stage, hit.on, brushRadius());
-        if (!ring) return;
-        for (const id of stage.shown)
-            drawRing(context, stage, stage.views[id], ring, { inner: 0.5 * brushStrength(), dashed: brushMode() === "smooth", minus: brushMode() === "subtract" });
+        for (const [k, at] of copiesOf(stage.skins.sheet, hit.on).entries()) {
+            const ring = ringAround(stage, at, brushRadius());
+            if (!ring) continue;
+            for (const id of stage.shown)
+                drawRing(context, stage, stage.views[id], ring, { inner: 0.5 * brushStrength(), dashed: brushMode() === "smooth", minus: brushMode() === "subtract", weight: k ? 0.5 : 1 });
+        }
     },
     tag(hit) {
         const shell = currentShell();

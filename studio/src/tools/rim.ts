@@ -1,4 +1,4 @@
-// The boundary: an operator that holds the rim, with the points of its curve as handles on the deployed views. Dragging moves a
+// The boundary: an operator that holds the rim, with handles on the deployed views that stand for its fields. Dragging moves a
 // handle in the plane that faces the view, or along an axis with X, Y or Z; it snaps to grid, hinges and the other handles
 // unless Ctrl is held.
 import { signal } from "@preact/signals";
@@ -7,7 +7,8 @@ import { niceBelow } from "../panels/colour";
 import type { OperatorSchema } from "../protocol/types";
 import type { Stage, View } from "../scene/stage";
 import { apply, currentShell, documentState, operatorNamed, operators, preview } from "../state/session";
-import { argumentsOf, callOf, setArgument } from "./calls";
+import { type Arguments, argumentsOf, callOf, resetArguments, setArgument, sheetRadius } from "./calls";
+import { type Handles, handlesOf, pointsField } from "./rimhandles";
 import { type Hit, type Tool, pointer } from "./tool";
 
 export const rimOp = signal("");
@@ -18,17 +19,41 @@ let dragging: { plane: THREE.Plane; from: THREE.Vector3 } | null = null;
 let snapped: THREE.Vector3 | null = null;
 
 export const boundaryOperators = (): OperatorSchema[] => operators.value.filter((o) => o.group === "boundary");
-export const rimSchema = () => operatorNamed(rimOp.value) ?? boundaryOperators().find((o) => o.name === "rim_circle") ?? boundaryOperators()[0];
-
-/** The field that holds the curve's points in space, if the operator has one. */
-export function pointsField(schema: OperatorSchema | undefined) {
-    return schema?.fields.find((f) => f.kind === "points" && f.width === 3 && f.required);
+/** The applied step that holds the rim now, of one operator or of any. */
+function rimStep(op?: string) {
+    const d = documentState.value;
+    const names = boundaryOperators().map((o) => o.name);
+    return d?.steps.slice(0, d.at).map((s) => s.operator).filter((o) => (op ? o.op === op : names.includes(o.op))).at(-1);
 }
 
-export function rimPoints(): [number, number, number][] {
+export const rimSchema = () => operatorNamed(rimOp.value) ?? operatorNamed(rimStep()?.op ?? "rim_circle") ?? boundaryOperators()[0];
+
+/** What the operator's fields are: as the document has them, but for what the user set since. */
+export function rimArguments(schema: OperatorSchema): Arguments {
+    const { op: _, ...step } = rimStep(schema.name) ?? { op: "" };
+    return { ...step, ...argumentsOf(schema.name) };
+}
+
+export function rimHandles(): Handles | null {
     const schema = rimSchema();
-    const field = pointsField(schema);
-    return field ? ((argumentsOf(schema!.name)[field.name] as [number, number, number][] | undefined) ?? []) : [];
+    return schema ? handlesOf(schema, rimArguments(schema), sheetRadius()) : null;
+}
+
+export const rimPoints = (): [number, number, number][] => rimHandles()?.points ?? [];
+
+/** One step of what is set; from then on the fields are the document's again. */
+export async function applyRim(): Promise<void> {
+    const schema = rimSchema();
+    const operator = rimCall();
+    if (schema && operator && (await apply(operator))) resetArguments(schema.name);
+}
+
+function moveHandle(k: number, to: [number, number, number]): void {
+    const schema = rimSchema();
+    const changed = schema && rimHandles()?.move(k, to);
+    if (!changed) return;
+    for (const [name, value] of Object.entries(changed)) setArgument(schema.name, name, typeof value === "number" ? tidy(value) : name === "points" ? value : (value as number[]).map(tidy));
+    previewRim();
 }
 
 export function setRimPoints(points: [number, number, number][]): void {
@@ -39,7 +64,7 @@ export function setRimPoints(points: [number, number, number][]): void {
 
 export function rimCall() {
     const schema = rimSchema();
-    return schema ? callOf(schema, argumentsOf(schema.name)) : null;
+    return schema ? callOf(schema, rimArguments(schema)) : null;
 }
 
 export function previewRim(): void {
@@ -131,7 +156,7 @@ export const rim: Tool = {
         activePoint.value = k;
         if (k < 0) {
             // a double click on the curve puts a handle there
-            if (hit.double && hit.on && rimPoints().length) insertNear(hit);
+            if (hit.double && hit.on && pointsField(rimSchema()) && rimPoints().length) insertNear(hit);
             hit.stage.invalidateOverlay();
             return false;
         }
@@ -147,10 +172,7 @@ export const rim: Tool = {
         if (axis !== null) for (const k of [0, 1, 2] as const) if (k !== axis) to.setComponent(k, dragging.from.getComponent(k));
         const place = snap(hit, to);
         const o = currentShell()!.origin;
-        const points = rimPoints().slice();
-        points[activePoint.value] = [tidy(place.x + o[0]), tidy(place.y + o[1]), tidy(place.z + o[2])];
-        setRimPoints(points);
-        previewRim();
+        moveHandle(activePoint.value, [tidy(place.x + o[0]), tidy(place.y + o[1]), tidy(place.z + o[2])]);
         hit.stage.invalidateOverlay();
     },
     up(hit) {
@@ -158,8 +180,7 @@ export const rim: Tool = {
         dragging = null;
         snapped = null;
         hit.stage.invalidateOverlay();
-        const operator = rimCall();
-        if (operator) void apply(operator);
+        void applyRim();
     },
     cancel() {
         dragging = null;
@@ -172,7 +193,7 @@ export const rim: Tool = {
             axis = axis === k ? null : (k as 0 | 1 | 2);
             return true;
         }
-        if ((event.key === "Delete" || event.key === "Backspace") && activePoint.value >= 0 && rimPoints().length > 3) {
+        if ((event.key === "Delete" || event.key === "Backspace") && activePoint.value >= 0 && pointsField(rimSchema()) && rimPoints().length > 3) {
             setRimPoints(rimPoints().filter((_, i) => i !== activePoint.value));
             activePoint.value = -1;
             pointer.value?.stage.invalidateOverlay();
@@ -181,12 +202,13 @@ export const rim: Tool = {
         return false;
     },
     overlay(context, stage) {
-        const points = rimPoints();
-        if (!points.length || !stage.skins || !currentShell()) return;
+        const handles = rimHandles();
+        if (!handles || !stage.skins || !currentShell()) return;
         for (const id of stage.shown) {
             const view = stage.views[id];
             if (view.state !== "space") continue;
-            const at = points.map((p) => stage.project(view, local(p)));
+            const at = handles.points.map((p) => stage.project(view, local(p)));
+            const curve = handles.curve.map((p) => stage.project(view, local(p)));
             context.save();
             context.beginPath();
             context.rect(view.rect.x, view.rect.y, view.rect.width, view.rect.height);
@@ -195,8 +217,8 @@ export const rim: Tool = {
             context.strokeStyle = stage.theme.ink;
             context.lineWidth = 1;
             context.beginPath();
-            at.forEach((p, k) => (k ? context.lineTo(p.x, p.y) : context.moveTo(p.x, p.y)));
-            context.closePath();
+            curve.forEach((p, k) => (k ? context.lineTo(p.x, p.y) : context.moveTo(p.x, p.y)));
+            if (handles.closed) context.closePath();
             context.stroke();
             context.setLineDash([]);
             at.forEach((p, k) => {
@@ -218,7 +240,7 @@ export const rim: Tool = {
             context.restore();
         }
     },
-    tag: (hit) => (dragging ? { strong: axis === null ? "Free" : `Along ${"XYZ"[axis]}`, rest: snapped ? "on a hinge" : "X, Y, Z hold an axis" } : handleAt(hit.stage, hit.view, hit.x, hit.y) >= 0 ? { strong: "Point", rest: "drag to move" } : null),
+    tag: (hit) => (dragging ? { strong: axis === null ? "Free" : `Along ${"XYZ"[axis]}`, rest: snapped ? "on a hinge" : "X, Y, Z hold an axis" } : handleAt(hit.stage, hit.view, hit.x, hit.y) >= 0 ? { strong: rimHandles()!.names[handleAt(hit.stage, hit.view, hit.x, hit.y)], rest: "drag to move" } : null),
 };
 
 function insertNear(hit: Hit): void {

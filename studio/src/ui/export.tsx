@@ -1,16 +1,17 @@
 // Export: every format that the program writes, with a look at what will be cut.
-import { useSignal } from "@preact/signals";
+import { signal, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import type { ExportedFile, Exporter, StateName } from "../protocol/types";
+import type { ExportedFile, Exporter, Plan, StateName } from "../protocol/types";
 import { CommandError } from "../protocol/link";
 import { ask, currentShell, documentState, hello, report, revision, status } from "../state/session";
 import { download, savePicture } from "../state/commands";
 import { record } from "../state/video";
 import { saveRhino } from "../rhino/save";
 import { dialog } from "../state/view";
-import { Button, Choice, Dialog, NumberRow, Row, Section } from "./controls";
+import { Button, Choice, Dialog, Row, Section } from "./controls";
 import { bytes, count, plural } from "./format";
 import { Icon } from "./icons";
+import { CutSettings, PlanFigures, cutDefaults, cutWords } from "./making";
 
 const groups: { title: string; endings: RegExp }[] = [
     { title: "Cut", endings: /\.(svg|dxf|pdf)$/ },
@@ -36,15 +37,15 @@ function seen(svg: string): string {
 /** What is asked for most stands first. */
 const order = [".svg", ".dxf", ".pdf", ".glb", ".obj", ".stl", ".json", ".csv"];
 const rank = (e: Exporter) => (order.indexOf(dotted(e)) + 100) % 100;
-/** Options that cut formats take. */
-const cutDefaults = { sheet: "", kerf: 0 };
+/** As they were last set: most exports are made again. */
+const cutOptions = signal(cutDefaults);
 
 export function ExportDialog() {
     revision.value;
     const exporters = (hello.value?.exporters ?? []).slice().sort((a, b) => rank(a) - rank(b));
     const ending = useSignal(exporters.some((e) => dotted(e) === ".svg") ? ".svg" : exporters[0] ? dotted(exporters[0]) : "picture");
     const state = useSignal<StateName | "">("");
-    const options = useSignal<{ sheet: string; kerf: number }>(cutDefaults);
+    const plan = useSignal<Plan | null>(null);
     const files = useSignal<ExportedFile[] | null>(null);
     const busy = useSignal(false);
     const wrong = useSignal("");
@@ -58,8 +59,8 @@ export function ExportDialog() {
         wrong.value = "";
         busy.value = true;
         try {
-            const cut = isCut(ending.value) ? { ...(options.value.sheet ? { sheet: options.value.sheet } : {}), ...(options.value.kerf ? { kerf: options.value.kerf } : {}) } : {};
-            const answer = await ask("export", { ending: exporter.ending, ...(state.value ? { state: state.value } : {}), ...cut });
+            const answer = await ask("export", { ending: exporter.ending, ...(state.value ? { state: state.value } : {}), ...(isCut(ending.value) ? cutWords(cutOptions.value) : {}) });
+            plan.value = answer.plan as Plan | null;
             return answer.files as ExportedFile[];
         } catch (error) {
             wrong.value = error instanceof CommandError ? error.problem.message : String(error);
@@ -75,6 +76,8 @@ export function ExportDialog() {
         const made: string[] = [];
         looked.value = null;
         files.value = null;
+        plan.value = null;
+        wrong.value = "";
         if (ending.value === ".svg" || ending.value === ".png")
             void run().then(async (list) => {
                 if (!list || !current) return;
@@ -93,7 +96,7 @@ export function ExportDialog() {
             current = false;
             made.forEach((u) => URL.revokeObjectURL(u));
         };
-    }, [ending.value, state.value, options.value]);
+    }, [ending.value, state.value, cutOptions.value]);
 
     const exportNow = async () => {
         const own = ownFormats.find((o) => o.id === ending.value);
@@ -169,14 +172,10 @@ export function ExportDialog() {
                         <Section title={exporter.name} aside={ending.value}>
                             <p class="small muted" style={{ marginBottom: "8px" }}>{exporter.doc}</p>
                             {states.length > 1 && <Row label="State">{(id) => <Choice id={id} value={state.value || exporter.default_state} options={states.map((s) => ({ value: s, title: s.charAt(0).toUpperCase() + s.slice(1) }))} onChange={(s) => (state.value = s)} />}</Row>}
-                            {isCut(ending.value) && (
-                                <>
-                                    <Row label="Sheet">{(id) => <div class="field"><input id={id} type="text" placeholder="one for all" value={options.value.sheet} onChange={(e) => (options.value = { ...options.value, sheet: e.currentTarget.value.replace(/[×*\s]+/g, "x") })} /><span class="unit">mm</span></div>}</Row>
-                                    <NumberRow label="Kerf" title="Full width of the beam" value={options.value.kerf} unit="mm" documentUnit="mm" lo={0} hi={20} onChange={(kerf) => (options.value = { ...options.value, kerf })} />
-                                </>
-                            )}
+                            {isCut(ending.value) && <CutSettings value={cutOptions.value} onChange={(o) => (cutOptions.value = o)} />}
                         </Section>
                     )}
+                    {plan.value && <Section title="What it takes"><PlanFigures plan={plan.value} /></Section>}
                     <Section title="Design">
                         <table class="figures">
                             <tbody>

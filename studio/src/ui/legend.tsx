@@ -20,7 +20,10 @@ export function Legend() {
     const x = (v: number) => (width * (v - scale.lo)) / (scale.hi - scale.lo);
     const clampX = (v: number) => Math.max(0, Math.min(width, x(v)));
     const most = Math.max(...bins, 1);
-    const tickDigits = field.id === "lambda" ? 2 : Math.max(0, Math.min(4, -Math.floor(Math.log10((scale.hi - scale.lo) / 4) + 1e-9)));
+    const tickDigits = field.id === "lambda" ? 2 : Math.max(0, Math.min(6, -Math.floor(Math.log10((scale.hi - scale.lo) / 4) + 1e-9)));
+    // long figures have no room beside each other
+    const ticks = tickDigits > 3 ? [0, 2, 4] : [0, 1, 2, 3, 4];
+    const rangeDigits = Math.max(field.digits, tickDigits);
     const signed = scale.lo < 0;
     const under = hovered.value >= 0 && hovered.value < values.length ? values[hovered.value] : NaN;
     const limit = field.id === "lambda" && scaleLimit.value < scale.hi ? clampX(scaleLimit.value) : null;
@@ -39,7 +42,7 @@ export function Legend() {
         <section class="legend float" aria-label="Legend">
             <header>
                 <Choice name="Colour by" bare value={fieldId.value} options={availableFields.value.map((f) => ({ value: f.id, title: f.unit && mode.value === "analyse" ? `${f.title}, ${unitLabel(f.unit, unit)}` : f.title }))} onChange={useField} />
-                <span class="range">{number(range[0], field.digits)} to {signed && range[1] > 0 ? "+" : ""}{number(range[1], field.digits)}{label && field.unit !== "N" ? ` ${label}` : ""}</span>
+                <span class="range">{number(range[0], rangeDigits)} to {signed && range[1] > 0 ? "+" : ""}{number(range[1], rangeDigits)}{label && field.unit !== "N" ? ` ${label}` : ""}</span>
             </header>
             <svg viewBox={`0 0 ${width} ${chart + bar + 24}`} role="img"
                 aria-label={`${field.title}: values from ${number(range[0], field.digits)} to ${number(range[1], field.digits)} ${label}`}
@@ -71,7 +74,7 @@ export function Legend() {
                     <g stroke="var(--accent)" fill="var(--accent)" stroke-width="2"><path d={`M${clampX(under)} 4V${chart + bar + 2}`} /><circle cx={clampX(under)} cy="3" r="2" /></g>
                 )}
                 {drag.value && <rect x={Math.min(clampX(drag.value[0]), clampX(drag.value[1]))} width={Math.abs(clampX(drag.value[0]) - clampX(drag.value[1]))} y="0" height={chart + bar + 2} fill="var(--accent)" opacity="0.2" />}
-                {[0, 1, 2, 3, 4].map((k) => (
+                {ticks.map((k) => (
                     <text key={k} x={(k * width) / 4} y={chart + bar + 22} font-size="12" fill="var(--text2)" text-anchor={k === 0 ? "start" : k === 4 ? "end" : "middle"}>
                         {signed && k > 2 ? "+" : ""}{number(tickValue(k), tickDigits)}
                     </text>

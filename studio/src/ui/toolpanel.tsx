@@ -10,7 +10,8 @@ import { brushMode, brushRadius, brushStrength, brushValue } from "../tools/brus
 import { measureCount, measured } from "../tools/measure";
 import { constraintOp } from "../tools/pin";
 import { fillCall, fillValue, gradientKind, smoothAmount, smoothCall } from "../tools/paintbox";
-import { activePoint, boundaryOperators, pointsField, pointsFromRim, previewRim, rimCall, rimOp, rimPoints, rimSchema, setRimPoints, snapping } from "../tools/rim";
+import { activePoint, applyRim, boundaryOperators, pointsFromRim, previewRim, rimArguments, rimCall, rimOp, rimPoints, rimSchema, setRimPoints, snapping } from "../tools/rim";
+import { pointsField } from "../tools/rimhandles";
 import { selectKind, type SelectKind } from "../tools/select";
 import { toolId } from "../tools/tool";
 import { Button, CheckBox, Choice, NumberField, NumberRow, Row, Section, Segments } from "./controls";
@@ -209,7 +210,7 @@ function RimPanel() {
     const field = pointsField(schema);
     const points = rimPoints();
     const k = activePoint.value;
-    const args = argumentsOf(schema.name);
+    const args = rimArguments(schema);
     const call = rimCall();
     const lacking = call ? missing(schema, call) : [];
     return (
@@ -250,7 +251,7 @@ function RimPanel() {
                 </>
             )}
             <div class="row" style={{ marginTop: "8px" }}>
-                <Button small disabled={lacking.length > 0} title={lacking.length ? `Missing: ${lacking.map((f) => f.title).join(", ")}` : schema.doc} onClick={() => call && void apply(call)}>Apply</Button>
+                <Button small disabled={lacking.length > 0} title={lacking.length ? `Missing: ${lacking.map((f) => f.title).join(", ")}` : schema.doc} onClick={() => void applyRim()}>Apply</Button>
             </div>
         </Section>
     );
