@@ -1015,7 +1015,7 @@ static void a_document_of_version_1_is_upgraded_by_its_first_change(void** state
     assert_same_design(design, &was);
     snapshot beginning = look(s);
     apply(s, "{\"op\": \"fill\", \"value\": 1.4}");
-    assert_int_equal(ask_number(path, "PRAGMA user_version"), 2);
+    assert_int_equal(ask_number(path, "PRAGMA user_version"), 3);
     assert_ok(ax_session_design(s, NULL, &design, &error), &error);
     assert_null(design);
     ax_session_close(s);
@@ -1035,6 +1035,73 @@ static void a_document_of_version_1_is_upgraded_by_its_first_change(void** state
     ax_design_free(&now);
     ax_design_free(&was);
     forget(&beginning);
+}
+
+static void write_table(const char* text)
+{
+    char name[80];
+    snprintf(name, sizeof name, "%s/scale.csv", folder);
+    FILE* out = fopen(name, "w");
+    fputs(text, out);
+    assert_int_equal(fclose(out), 0);
+}
+
+static void remove_table(void)
+{
+    char name[80];
+    snprintf(name, sizeof name, "%s/scale.csv", folder);
+    assert_int_equal(unlink(name), 0);
+}
+
+// The file was written by the program when documents had version 2: with a history, without what its files held, and with forms stored in a
+// format that is not read any more.
+static void a_document_of_version_2_is_upgraded_by_its_first_change(void** state)
+{
+    (void)state;
+    copy_file(AX_SOURCE_DIR "/tests/documents/version-2.auxshell", path);
+    write_table("x,y,lambda\n-1,0,1.2\n1,0,1.4\n0,1,1.3\n0,-1,1.3\n");
+    ax_session* s = open_session(path);
+    assert_int_equal(ax_session_at(s), 4);
+    assert_int_equal(ask_number(path, "PRAGMA user_version"), 2);
+    apply(s, "{\"op\": \"fill\", \"value\": 1.3}");
+    assert_int_equal(ask_number(path, "PRAGMA user_version"), 3);
+    ax_session_close(s);
+    assert_sound(path);
+}
+
+// A document goes elsewhere without the files that its steps name, and is computed again from the beginning.
+static void a_document_holds_what_its_files_held(void** state)
+{
+    (void)state;
+    const char* const operators[] = {CIRCLE(60), "{\"op\": \"table\", \"file\": \"scale.csv\"}"};
+    for (int changed = 0; changed < 2; ++changed) { // a file that is there counts, whatever it held before
+        write_table("x,y,lambda\n-1,0,1.2\n1,0,1.7\n0,1,1.3\n0,-1,1.3\n");
+        ax_session* s = create(path, 2, operators);
+        snapshot was = look(s);
+        ax_session_close(s);
+        assert_int_equal(ask_number(path, "SELECT count(*) FROM file"), 1);
+        run_sql(path, "DELETE FROM checkpoint");
+        remove_table();
+        if (changed)
+            write_table("x,y,lambda\n-1,0,1.25\n1,0,1.25\n0,1,1.25\n0,-1,1.25\n");
+        s = open_session(path);
+        assert_int_equal(ax_session_at(s), 2);
+        if (changed) {
+            ax_form_view view = ax_form_look(ax_session_form(s));
+            for (int t = 0; t < view.linkage->triangle_count; ++t)
+                assert_near(view.prescribed[t], 1.25, 1e-12);
+        } else {
+            assert_shows(s, &was);
+            undo(s); // what no step names any more is not kept
+            apply(s, "{\"op\": \"fill\", \"value\": 1.4}");
+            if (ask_number(path, "SELECT count(*) FROM step WHERE operator LIKE '%table%'") == 0)
+                assert_int_equal(ask_number(path, "SELECT count(*) FROM file"), 0);
+        }
+        ax_session_close(s);
+        assert_sound(path);
+        forget(&was);
+        unlink(path);
+    }
 }
 
 static void a_finished_design_is_there_until_it_is_edited(void** state)
@@ -1132,6 +1199,8 @@ int main(void)
         cmocka_unit_test_teardown(a_second_program_is_told_and_may_only_read, clean),
         cmocka_unit_test_teardown(one_of_many_gets_the_lock, clean),
         cmocka_unit_test_teardown(a_document_of_version_1_is_upgraded_by_its_first_change, clean),
+        cmocka_unit_test_teardown(a_document_of_version_2_is_upgraded_by_its_first_change, clean),
+        cmocka_unit_test_teardown(a_document_holds_what_its_files_held, clean),
         cmocka_unit_test_teardown(a_finished_design_is_there_until_it_is_edited, clean),
         cmocka_unit_test_teardown(a_copy_has_all_of_it, clean),
     };

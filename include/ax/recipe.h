@@ -42,6 +42,7 @@ typedef struct ax_finished {
 typedef struct ax_operator_context {
     ax_form** form;     // NULL inside before the first operator; operators that start a design put it there
     const char* folder; // relative file names are within it
+    const char* file;   // read in place of the one that the operator names; NULL: that one
     bool live;          // a preview while the hand moves: edit, do not settle
     const ax_progress* progress;
     ax_finished* finished; // where what finishing makes is put; NULL: nowhere
@@ -89,6 +90,8 @@ ax_status ax_recipe_write(const ax_recipe* recipe, const char* path, ax_error* e
 int ax_recipe_count(const ax_recipe* recipe);
 const char* ax_recipe_operator(const ax_recipe* recipe, int k); // JSON text, borrowed
 const ax_operator_type* ax_recipe_type(const ax_recipe* recipe, int k);
+// The file that operator k reads, as it names it; NULL: none. Owned by the caller (ax_free).
+char* ax_recipe_file(const ax_recipe* recipe, int k);
 // One line for people, "Paint: 1.6 within 0.3 m"; text holds 160 characters.
 void ax_recipe_words(const ax_recipe* recipe, int k, char text[160]);
 // Inserts at place k (count: at the end) after checking, replaces, or removes.
@@ -99,9 +102,9 @@ void ax_recipe_remove(ax_recipe* recipe, int k);
 // Applies operator k to *form, then settles if its type says so. On failure *form is as it was.
 ax_status ax_recipe_apply(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress,
                           ax_form** form, ax_error* error);
-// The same, and keeps what an operator that finishes made in *finished.
-ax_status ax_recipe_apply_finished(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress,
-                                   ax_form** form, ax_finished* finished, ax_error* error);
+// The same, and keeps what an operator that finishes made in *finished. `file` (NULL: none) is read in place of the one it names.
+ax_status ax_recipe_apply_finished(const ax_recipe* recipe, int k, const char* folder, const char* file,
+                                   const ax_progress* progress, ax_form** form, ax_finished* finished, ax_error* error);
 // The same for an operator that stands in no recipe yet, without settling: a preview while the hand moves.
 ax_status ax_operator_preview(const char* json, const char* folder, ax_form** form, ax_error* error);
 // Plays operators 0 .. until - 1 (until < 0: all) from nothing; `after` (NULL: none) is called after each one and may stop by

@@ -165,6 +165,28 @@ int ax_history_add_step(sqlite3* db, int64_t parent, const char* json, int64_t* 
     return result;
 }
 
+int ax_history_file(sqlite3* db, int64_t step, char** bytes, size_t* size)
+{
+    int result = SQLITE_OK;
+    sqlite3_stmt* row = ax_sql_ask(db, "SELECT data FROM file WHERE step = ?1", "i", step);
+    *bytes = NULL, *size = 0;
+    if (ax_sql_next(row, &result)) {
+        const void* data = sqlite3_column_blob(row, 0); // before its length, as SQLite asks
+        *size = (size_t)sqlite3_column_bytes(row, 0);
+        *bytes = data ? ax_copy(data, *size, 1) : NULL;
+    }
+    sqlite3_finalize(row);
+    return result;
+}
+
+// Nothing is written if it is there already, so that playing a step again costs no writing.
+int ax_history_keep_file(sqlite3* db, int64_t step, const char* name, const char* bytes, size_t size)
+{
+    return ax_sql_run(db,
+                      "INSERT INTO file VALUES(?1, ?2, ?3) ON CONFLICT(step) DO UPDATE SET data = ?3 WHERE data <> ?3",
+                      "itb", step, name, bytes, size);
+}
+
 // What no moment leads to any more.
 static int drop_unreachable(sqlite3* db)
 {
@@ -172,6 +194,7 @@ static int drop_unreachable(sqlite3* db)
         ("DELETE FROM step WHERE id NOT IN (WITH RECURSIVE live(id) AS (SELECT tip FROM moment UNION"
          " SELECT parent FROM step JOIN live USING(id)) SELECT id FROM live)"),
         "DELETE FROM checkpoint WHERE step <> 0 AND step NOT IN (SELECT id FROM step)",
+        "DELETE FROM file WHERE step NOT IN (SELECT id FROM step)",
         "DELETE FROM property WHERE design <> 0 AND design NOT IN (SELECT id FROM step)",
         "DELETE FROM array WHERE design <> 0 AND design NOT IN (SELECT id FROM step)",
     };

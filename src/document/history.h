@@ -33,12 +33,16 @@ int ax_history_find(sqlite3* db, int64_t parent, const char* json, int64_t* step
 // it is not what was written.
 const void* ax_history_checkpoint(sqlite3* db, int64_t step, size_t* size, sqlite3_stmt** row);
 
+// What the file that a step names held when it was read last; owned by the caller. *bytes NULL: nothing is kept.
+int ax_history_file(sqlite3* db, int64_t step, char** bytes, size_t* size);
+
 // ---- within a transaction ---------------------------------------------------------------------------------------------------
 
 int ax_history_add_step(sqlite3* db, int64_t parent, const char* json, int64_t* step);
 // Makes `present` a moment and the present one, and drops those behind it with all that only they needed.
 int ax_history_add_moment(sqlite3* db, const ax_present* present, const char* words, double time);
 int ax_history_go(sqlite3* db, int moment);
+int ax_history_keep_file(sqlite3* db, int64_t step, const char* name, const char* bytes, size_t size);
 int ax_history_keep(sqlite3* db, int64_t step, const void* form, size_t size);
 // Keeps checkpoints and designs of the present, of the last moments and of every tenth one before, within bounds.
 int ax_history_thin(sqlite3* db, int now);

@@ -36,6 +36,8 @@ static const char* const steps[] = {
     "INSERT INTO session VALUES(0, '');"
     "DROP TABLE seal;"
     "CREATE TABLE seal(name TEXT PRIMARY KEY NOT NULL, digest INTEGER NOT NULL);",
+    // What the files that steps name held when they were read, so that a document is whole wherever it goes.
+    "CREATE TABLE file(step INTEGER PRIMARY KEY, name TEXT NOT NULL, data BLOB NOT NULL);",
 };
 
 const ax_schema ax_document_schema = {.version = sizeof steps / sizeof *steps, .steps = steps};

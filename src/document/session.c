@@ -6,6 +6,7 @@
 #include "document/lock.h"
 #include "document/opening.h"
 #include "document/sql.h"
+#include "input/bytes.h"
 
 #include <libgen.h>
 #include <limits.h>
@@ -16,8 +17,9 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { SEALED = 5 };  // tables
-enum { stride = 10 }; // while steps are played, the form is kept after every tenth
+enum { SEALED = 6 };            // tables
+enum { most_file = 256 << 20 }; // bytes; larger ones are not kept
+enum { stride = 10 };           // while steps are played, the form is kept after every tenth
 
 struct ax_session {
     char *path, *folder, *read_only;
@@ -121,12 +123,21 @@ typedef struct kept {
     size_t size;
 } kept;
 
+// What a step read from the file that it names.
+typedef struct source {
+    int at;
+    char *name, *bytes;
+    size_t size;
+} source;
+
 // A change that is being tried: nothing of the session but its recipe is touched before it is in the file.
 typedef struct attempt {
     ax_form* form;
     int at;
     int kept_count, kept_capacity;
     kept* kept;
+    int source_count;
+    source* sources;
     ax_finished finished; // by the last step
 } attempt;
 
@@ -159,6 +170,11 @@ static void forget(attempt* a)
     for (int k = 0; k < a->kept_count; ++k)
         ax_free(a->kept[k].bytes);
     ax_free(a->kept);
+    for (int k = 0; k < a->source_count; ++k) {
+        ax_free(a->sources[k].name);
+        ax_free(a->sources[k].bytes);
+    }
+    ax_free(a->sources);
     ax_design_free(&a->finished.design);
     *a = (attempt){0};
 }
@@ -202,6 +218,58 @@ static ax_status find_start(ax_session* s, int until, attempt* a, ax_error* erro
     return s->from_design ? fetch_beginning(s, a, error) : AX_OK;
 }
 
+// A stored file as one on the disk, for readers that open files: a name of its own with the same ending. Owned by the caller, who removes
+// it; NULL if it cannot be written.
+static char* unpack(const char* name, const char* bytes, size_t size)
+{
+    const char *folder = getenv("TMPDIR"), *ending = strrchr(name, '.');
+    if (!ending || strchr(ending, '/'))
+        ending = "";
+    size_t room = strlen(folder ? folder : "/tmp") + strlen(ending) + 32;
+    char* path = AX_NEW(char, room);
+    snprintf(path, room, "%s/auxshell-XXXXXX%s", folder ? folder : "/tmp", ending);
+    int out = mkstemps(path, (int)strlen(ending));
+    FILE* stream = out >= 0 ? fdopen(out, "wb") : NULL;
+    bool written = stream && fwrite(bytes, 1, size, stream) == size;
+    written = (!stream || fclose(stream) == 0) && written;
+    if (written)
+        return path;
+    if (out >= 0)
+        unlink(path);
+    ax_free(path);
+    return NULL;
+}
+
+// Applies step `at` (counted from 0) to a->form. Its file is read where it is, and otherwise as it was when it was read last.
+static ax_status apply_step(ax_session* s, attempt* a, int at, const ax_progress* progress, ax_error* error)
+{
+    char *name = ax_recipe_file(s->recipe, at), *path = NULL, *bytes = NULL, *unpacked = NULL;
+    size_t size = 0;
+    if (name) {
+        size_t room = strlen(s->folder) + strlen(name) + 2;
+        path = AX_NEW(char, room);
+        snprintf(path, room, "%s%s%s", *name == '/' ? "" : s->folder, *name == '/' ? "" : "/", name);
+        if (ax_bytes_read(path, "a file", most_file, &bytes, &size, NULL) != AX_OK && access(path, F_OK) != 0 &&
+            s->ids[at + 1] >= 0 && ax_history_file(s->database.view, s->ids[at + 1], &bytes, &size) == SQLITE_OK &&
+            bytes)
+            unpacked = unpack(name, bytes, size);
+    }
+    ax_status status =
+        ax_recipe_apply_finished(s->recipe, at, s->folder, unpacked, progress, &a->form, &a->finished, error);
+    if (unpacked)
+        unlink(unpacked);
+    if (status == AX_OK && bytes) {
+        a->sources = ax_realloc(a->sources, (size_t)a->source_count + 1, sizeof *a->sources);
+        a->sources[a->source_count++] = (source){at + 1, name, bytes, size};
+        name = NULL, bytes = NULL;
+    }
+    ax_free(name);
+    ax_free(path);
+    ax_free(bytes);
+    ax_free(unpacked);
+    return status;
+}
+
 // Reaches the state after `until` steps of the recipe, or as far as they go.
 static ax_status play(ax_session* s, int until, const ax_progress* progress, attempt* a, ax_error* error)
 {
@@ -214,8 +282,7 @@ static ax_status play(ax_session* s, int until, const ax_progress* progress, att
         double lo = (double)(a->at - first) / (until - first), hi = (double)(a->at + 1 - first) / (until - first);
         ax_design_free(&a->finished.design);
         a->finished = (ax_finished){0};
-        status = ax_recipe_apply_finished(s->recipe, a->at, s->folder, ax_progress_within(&slot, progress, lo, hi),
-                                          &a->form, &a->finished, error);
+        status = apply_step(s, a, a->at, ax_progress_within(&slot, progress, lo, hi), error);
         if (status != AX_OK)
             break;
         ++a->at;
@@ -242,7 +309,7 @@ static double now(void)
 }
 
 // Tables that are sealed again after they were touched. Checkpoints are not sealed; see schema.h.
-static const char* const sealed[SEALED] = {"step", "moment", "session", "property", "array"};
+static const char* const sealed[SEALED] = {"step", "moment", "session", "property", "array", "file"};
 
 static void on_touch(void* context, int operation, const char* database, const char* table, sqlite3_int64 row)
 {
@@ -310,6 +377,10 @@ static int write_states(ax_session* s, const attempt* a)
     for (int k = 0; k < a->kept_count && result == SQLITE_OK; ++k)
         if (!a->kept[k].stored)
             result = ax_history_keep(db, s->ids[a->kept[k].at], a->kept[k].bytes, a->kept[k].size);
+    for (int k = 0; k < a->source_count && result == SQLITE_OK; ++k) {
+        const source* f = &a->sources[k];
+        result = ax_history_keep_file(db, s->ids[f->at], f->name, f->bytes, f->size);
+    }
     if (result == SQLITE_OK && a->finished.made)
         result = ax_design_store(db, s->ids[a->at], &a->finished.design);
     return result;
@@ -706,14 +777,12 @@ static void take_design(ax_session* s, ax_design* design)
 static ax_status finish_again(ax_session* s, const ax_progress* progress, ax_error* error)
 {
     attempt before;
-    ax_finished finished = {0};
     int last = s->present.at - 1;
     ax_status status = play(s, last, progress, &before, error);
     if (status == AX_OK)
-        status = ax_recipe_apply_finished(s->recipe, last, s->folder, progress, &before.form, &finished, error);
-    if (status == AX_OK && finished.made)
-        take_design(s, &finished.design);
-    ax_design_free(&finished.design);
+        status = apply_step(s, &before, last, progress, error);
+    if (status == AX_OK && before.finished.made)
+        take_design(s, &before.finished.design);
     revert(s, &before);
     return status;
 }

@@ -45,18 +45,27 @@ static ax_status apply(const ax_arguments* a, const ax_operator_context* context
 ax_status ax_recipe_apply(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress,
                           ax_form** form, ax_error* error)
 {
-    return ax_recipe_apply_finished(recipe, k, folder, progress, form, NULL, error);
+    return ax_recipe_apply_finished(recipe, k, folder, NULL, progress, form, NULL, error);
 }
 
-ax_status ax_recipe_apply_finished(const ax_recipe* recipe, int k, const char* folder, const ax_progress* progress,
-                                   ax_form** form, ax_finished* finished, ax_error* error)
+char* ax_recipe_file(const ax_recipe* recipe, int k)
+{
+    json_t* object = json_loads(ax_recipe_operator(recipe, k), 0, NULL);
+    const char* name = json_string_value(json_object_get(object, "file"));
+    char* copy = name ? ax_copy(name, strlen(name) + 1, 1) : NULL;
+    json_decref(object);
+    return copy;
+}
+
+ax_status ax_recipe_apply_finished(const ax_recipe* recipe, int k, const char* folder, const char* file,
+                                   const ax_progress* progress, ax_form** form, ax_finished* finished, ax_error* error)
 {
     ax_arguments arguments;
     ax_error inner = {0};
     ax_status status = read_arguments(ax_recipe_operator(recipe, k), &arguments, &inner);
     if (status == AX_OK) {
         const ax_operator_context context = {
-            .form = form, .folder = folder, .progress = progress, .finished = finished};
+            .form = form, .folder = folder, .file = file, .progress = progress, .finished = finished};
         status = apply(&arguments, &context, &inner);
         ax_arguments_free(&arguments);
     }
