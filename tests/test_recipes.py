@@ -52,6 +52,19 @@ class Recipes(CommandCase):
         self.assertIsNotNone(design["simulated"])
         self.assertLess(design["report"]["congruence_max"], 1e-9)
 
+    def test_supports_are_selected_as_in_recipes(self):
+        out = self.folder / "x.auxshell"
+        self.succeed("run", self.write([*SMALL, {"op": "finish"}]), "-o", out)
+        rim = set(json.loads(self.export(out))["supports"])
+        for words, share in (("rim", 1), ("rim/2", 0.5), ("rim, !rim:-5..5", 0.97), ("disc(0,0,2) & rim", 1)):
+            self.succeed("simulate", out, "--support", words)
+            supports = set(json.loads(self.export(out))["supports"])
+            self.assertLessEqual(supports, rim, words)
+            self.assertAlmostEqual(len(supports) / len(rim), share, delta=0.05, msg=words)
+        for words, said in (("rim/0", "--support: The selection"), ("0-99999", "99999"), ("#arch", "arch"),
+                            ("3,9", "at least three")):
+            self.refuse(2, said, "simulate", out, "--support", words)
+
     def test_until_stops_early(self):
         words = self.succeed("run", self.write(SMALL), "-o", self.folder / "x.auxshell", "--until", 2)
         self.assertIn("  2  Paint", words)

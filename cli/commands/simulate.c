@@ -52,9 +52,9 @@ static const command_option options[] = {
      .fallback = "that of the document",
      .offset = offsetof(arguments, pressure)},
     {.name = "--support",
-     .value = "rim|SELECTION",
-     .text = "hinges held at their deployed places: rim, rim/N for every Nth rim hinge, or hinge numbers and ranges "
-             "such as 0-12,40,77",
+     .value = "SELECTION",
+     .text = "hinges held at their deployed places, in words as in recipes: rim, rim/3, rim:0..90, 0-12,40,77, "
+             "box(-1,0,1,2), #arch and others",
      .kind = OPTION_TEXT,
      .fallback = "that of the document",
      .offset = offsetof(arguments, support)},
@@ -73,6 +73,17 @@ static ax_load chosen_load(const arguments* a, const ax_load* present)
     if (a->pressure > 0)
         load.pressure = a->pressure;
     return load;
+}
+
+static ax_status choose_supports(const char* words, ax_session* session, ax_design* design, ax_error* error)
+{
+    int *hinges, count;
+    ax_error inner = {0};
+    if (ax_select(ax_session_form(session), words, &hinges, &count, &inner) != AX_OK)
+        return ax_fail(error, AX_USAGE, "--support: %s", inner.message);
+    ax_design_set_supports(design, count, hinges);
+    ax_free(hinges);
+    return AX_OK;
 }
 
 // The design as the document has it, with the load and supports that were asked.
@@ -97,7 +108,7 @@ static ax_status prepare(const arguments* a, ax_session* session, ax_design* des
         return ax_fail(error, AX_USAGE, "--density belongs to --load gravity.");
     if (a->pressure > 0 && load->kind != AX_LOAD_INFLATION)
         return ax_fail(error, AX_USAGE, "--pressure belongs to --load inflation.");
-    return a->support ? ax_design_set_supports(design, a->support, error) : AX_OK;
+    return a->support ? choose_supports(a->support, session, design, error) : AX_OK;
 }
 
 static ax_status run(const void* given, ax_error* error)

@@ -121,8 +121,8 @@ ax_status ax_design_from_target(const ax_mesh* target, const ax_design_options* 
 // failure these are cleared (a state that is not exact is not kept).
 ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_progress* progress, ax_error* error);
 
-// Sets the supports from words: "rim", "rim/3" (every third rim hinge), or hinge numbers and ranges "0-12,40,77".
-ax_status ax_design_set_supports(ax_design* design, const char* words, ax_error* error);
+// Makes these hinges the supports (ax_select finds them by words), and drops the simulated state, which belonged to others.
+void ax_design_set_supports(ax_design* design, int count, const int* hinges);
 
 // Measures everything again from the states (not from what the solvers say). Called by the functions above.
 void ax_design_measure(ax_design* design);

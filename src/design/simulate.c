@@ -5,7 +5,7 @@
 #include "design/simulate.h"
 #include "mesh/geometry.h"
 
-#include <ctype.h>
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -161,49 +161,13 @@ ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const 
     return status;
 }
 
-ax_status ax_design_set_supports(ax_design* design, const char* words, ax_error* error)
+void ax_design_set_supports(ax_design* design, int count, const int* hinges)
 {
-    const ax_linkage* linkage = &design->linkage;
-    int n = linkage->hinge_count, every = 1, used = 0;
-    unsigned char* chosen = AX_NEW0(unsigned char, n);
-    ax_status status = AX_OK;
-    if (strcmp(words, "rim") == 0 || (sscanf(words, "rim/%d%n", &every, &used) == 1 && !words[used] && every >= 1)) {
-        int *order = AX_NEW(int, n), count = ax_linkage_rim(linkage, order);
-        for (int k = 0; k < count; k += every)
-            chosen[order[k]] = 1;
-        if (every == 1)
-            memcpy(chosen, linkage->on_rim, (size_t)n);
-        ax_free(order);
-    } else {
-        const char* at = words;
-        while (status == AX_OK && *at) {
-            char* end;
-            long from = isdigit((unsigned char)*at) ? strtol(at, &end, 10) : -1, to = from;
-            if (from >= 0 && *end == '-' && isdigit((unsigned char)end[1]))
-                to = strtol(end + 1, &end, 10);
-            if (from < 0 || (*end && *end != ',') || (*end == ',' && !end[1]))
-                status =
-                    ax_fail(error, AX_USAGE,
-                            "Supports are \"rim\", \"rim/N\" or hinge numbers and ranges such as 0-12,40,77; \"%s\" is "
-                            "none of these.",
-                            words);
-            else if (to >= n || from > to)
-                status = ax_fail(error, AX_USAGE, "Hinges are numbered 0 to %d; %ld to %ld is not among them.", n - 1,
-                                 from, to);
-            for (long h = from; status == AX_OK && h <= to; ++h)
-                chosen[h] = 1;
-            at = status == AX_OK ? end + (*end == ',') : at;
-        }
-        if (status == AX_OK && !*words)
-            status =
-                ax_fail(error, AX_USAGE, "No supports are given: use \"rim\" or hinge numbers such as 0-12,40,77.");
+    memset(design->supports, 0, (size_t)design->linkage.hinge_count);
+    for (int k = 0; k < count; ++k) {
+        assert(hinges[k] >= 0 && hinges[k] < design->linkage.hinge_count);
+        design->supports[hinges[k]] = 1;
     }
-    if (status == AX_OK) {
-        ax_free(design->supports);
-        design->supports = chosen;
-        clear_simulated(design); // it belonged to other supports
-        ax_design_measure(design);
-    } else
-        ax_free(chosen);
-    return status;
+    clear_simulated(design); // it belonged to other supports
+    ax_design_measure(design);
 }
