@@ -576,7 +576,8 @@ static int by_pair_then_depth(const void* a, const void* b)
 // Every pair once, where it overlaps most.
 static void name_meetings(ax_cut_plan* plan, meetings* m)
 {
-    qsort(m->list, (size_t)m->count, sizeof *m->list, by_pair_then_depth);
+    if (m->count)
+        qsort(m->list, (size_t)m->count, sizeof *m->list, by_pair_then_depth);
     for (int i = 0; i < m->count; ++i) {
         const meeting *at = &m->list[i], *before = at - (i > 0);
         if (i == 0 || memcmp(at->panels, before->panels, sizeof at->panels) != 0)
