@@ -80,11 +80,13 @@ export class Hand {
         await this.rest();
     }
 
-    /** Nothing is solved any more and the checks are in. */
+    /** Nothing is solved any more, the checks are in, and the shell here is the one that they are about. */
     async rest(timeout = 120000) {
         await this.page.waitForFunction(() => {
             const s = auxshell.session;
-            return s.status.value?.solver === "idle" && s.progress.value === null && s.report.value !== null && (auxshell.shell()?.flags & 4) === 0;
+            const shell = auxshell.shell();
+            return s.status.value?.solver === "idle" && s.progress.value === null && shell !== null && (shell.flags & 4) === 0
+                && s.report.value?.revision === shell.revision;
         }, null, { timeout });
     }
 
