@@ -37,7 +37,7 @@ try {
         studio = await new Studio().start(".");
         const hand = await Hand.open(browser, studio.address, { viewport: { width: 1600, height: 1000 }, colorScheme, refines: true });
         const shot = async (name) => {
-            await hand.page.waitForFunction(() => auxshell.stage.value.atRest, null, { timeout: 60000 });
+            await hand.page.waitForFunction(() => auxshell.stage.value?.atRest ?? true, null, { timeout: 60000 });
             await hand.page.screenshot({ path: join(pictures, `studio-${name}.png`) });
         };
         await hand.key("b");

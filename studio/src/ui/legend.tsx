@@ -21,8 +21,6 @@ export function Legend() {
     const clampX = (v: number) => Math.max(0, Math.min(width, x(v)));
     const most = Math.max(...bins, 1);
     const tickDigits = field.id === "lambda" ? 2 : Math.max(0, Math.min(6, -Math.floor(Math.log10((scale.hi - scale.lo) / 4) + 1e-9)));
-    // long figures have no room beside each other
-    const ticks = tickDigits > 3 ? [0, 2, 4] : [0, 1, 2, 3, 4];
     const rangeDigits = Math.max(field.digits, tickDigits);
     const signed = scale.lo < 0;
     const under = hovered.value >= 0 && hovered.value < values.length ? values[hovered.value] : NaN;
@@ -38,6 +36,8 @@ export function Legend() {
         select(panels);
     };
     const tickValue = (k: number) => scale.lo + (k / 4) * (scale.hi - scale.lo);
+    // five long figures have no room beside each other
+    const ticks = Math.max(...[0, 4].map((k) => number(tickValue(k), tickDigits).length)) > 5 ? [0, 2, 4] : [0, 1, 2, 3, 4];
     return (
         <section class="legend float" aria-label="Legend">
             <header>
