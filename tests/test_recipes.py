@@ -7,7 +7,7 @@ import time
 import unittest
 
 import support.tap
-from support.command import AUXSHELL, ROOT, CommandCase, run
+from support.command import AUXSHELL, ROOT, CommandCase, run, run
 
 SMALL = [
     {"op": "start_circle", "radius": 1, "triangles": 150, "scale": 1.2},
@@ -51,6 +51,20 @@ class Recipes(CommandCase):
         design = json.loads(self.export(out))
         self.assertIsNotNone(design["simulated"])
         self.assertLess(design["report"]["congruence_max"], 1e-9)
+
+    def test_a_load_on_what_nothing_holds_is_refused(self):
+        start, out = SMALL[:2], ("-o", self.folder / "x.auxshell")
+        line = {"op": "rim_line", "point": [1, 0, 0], "direction": [0, 1, 0], "hinges": "rim:-40..40"}
+        one = {"op": "hold_fixed", "hinges": "0"}
+        for load in ({"op": "gravity"}, {"op": "inflation"}):
+            for words, operators in (("Nothing holds the sheet", [*start, load]),
+                                     ("straight line", [*start, line, load]),
+                                     ("straight line", [*start, one, load]),
+                                     ("Nothing holds the sheet", [*SMALL[:3], load, {"op": "rim_free"}])):
+                done = run("run", self.write(operators), *out)
+                self.assertEqual(done.returncode, 4, operators)
+                self.assertIn(words, done.stderr)
+            self.succeed("run", self.write([*start, line, one, load]), *out)
 
     def test_supports_are_selected_as_in_recipes(self):
         out = self.folder / "x.auxshell"

@@ -138,8 +138,9 @@ void ax_form_put_underlay(ax_form* form, const char* name, const ax_mesh* mesh, 
 
 // A visual update: so many projective iterations of every state. Keeps multipliers, so that the hand feels no jump.
 void ax_form_iterate(ax_form* form, int iterations);
-// Iterates until the states rest or `iterations` are done (0: 400, and up to five times that while edges are still off). AX_CANCELLED leaves the form as
-// it was before the call. What could not be met is in the report; the return is AX_OK all the same.
+// Iterates until the states rest or `iterations` are done (0: 400, and up to five times that while edges are still off). AX_CANCELLED leaves
+// the form as it was before the call, and so does AX_CANNOT_REALISE: a load on a form that nothing holds. What could not be met is in the
+// report; the return is AX_OK all the same.
 ax_status ax_form_settle(ax_form* form, int iterations, const ax_progress* progress, ax_error* error);
 // Start of the deployed states: `height` out of plane (over the sheet's radius), a bowl or dome; forgets multipliers.
 void ax_form_restart(ax_form* form, double height);

@@ -619,6 +619,9 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
 {
     int limit = iterations > 0 ? iterations : STANDARD_ITERATIONS;
     int n = f->lattice.linkage.hinge_count;
+    ax_status held = ax_form_hangs(f) ? ax_form_check_support(f, error) : AX_OK;
+    if (held != AX_OK)
+        return held;
     snapshot before = keep(f);
     ax_form_build(f);
     // The flat state starts from the twist of its factors, so that it does not depend on the way here; the deployed one starts

@@ -117,6 +117,9 @@ ax_form_constraint ax_form_constraint_copy(const ax_form_constraint* constraint)
 void ax_form_constraint_release(ax_form_constraint* constraint);
 ax_curve* ax_curve_of_shape(const ax_curve_shape* shape);
 
+// AX_CANNOT_REALISE, and what to do, where nothing holds the form under its load, or all that does lies on a straight line.
+ax_status ax_form_check_support(const ax_form* form, ax_error* error);
+
 // Solvers for what is asked now, if there are none.
 void ax_form_build(ax_form* form);
 void ax_form_drop_solvers(ax_form* form);
