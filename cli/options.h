@@ -39,6 +39,13 @@ typedef struct command_option {
     const char* excludes; // an option that cannot be given together with this one
 } command_option;
 
+// The operand that most commands begin with: `document` of their arguments.
+#define OPTION_DOCUMENT(arguments)                                                                                     \
+    {                                                                                                                  \
+        .name = "P.auxshell", .text = "the document", .kind = OPTION_TEXT, .operand = true, .required = true,          \
+        .offset = offsetof(arguments, document)                                                                        \
+    }
+
 // Takes one row of a list: a name and what it means.
 typedef void (*list_row)(const char* name, const char* text, FILE* out);
 

@@ -15,12 +15,7 @@ static void defaults(void* given)
 }
 
 static const command_option options[] = {
-    {.name = "P.auxshell",
-     .text = "the document",
-     .kind = OPTION_TEXT,
-     .operand = true,
-     .required = true,
-     .offset = offsetof(arguments, document)},
+    OPTION_DOCUMENT(arguments),
     {.name = "--within",
      .value = "MM",
      .text = "the error of an edge down to which the table goes",

@@ -24,12 +24,7 @@ static void defaults(void* given)
 static const char* const states[] = {"flat", "deployed", "simulated"};
 
 static const command_option options[] = {
-    {.name = "P.auxshell",
-     .text = "the document",
-     .kind = OPTION_TEXT,
-     .operand = true,
-     .required = true,
-     .offset = offsetof(arguments, document)},
+    OPTION_DOCUMENT(arguments),
     {.name = "-o",
      .value = "FILE",
      .text = "the file to write; its ending chooses the format",

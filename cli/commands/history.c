@@ -13,12 +13,7 @@ typedef struct arguments {
 } arguments;
 
 static const command_option options[] = {
-    {.name = "P.auxshell",
-     .text = "the document",
-     .kind = OPTION_TEXT,
-     .operand = true,
-     .required = true,
-     .offset = offsetof(arguments, document)},
+    OPTION_DOCUMENT(arguments),
     {.name = "--json", .text = "print it as JSON", .kind = OPTION_FLAG, .offset = offsetof(arguments, json)},
 };
 

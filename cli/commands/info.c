@@ -15,12 +15,7 @@ typedef struct arguments {
 } arguments;
 
 static const command_option options[] = {
-    {.name = "P.auxshell",
-     .text = "the document",
-     .kind = OPTION_TEXT,
-     .operand = true,
-     .required = true,
-     .offset = offsetof(arguments, document)},
+    OPTION_DOCUMENT(arguments),
     {.name = "--json", .text = "print every figure as JSON", .kind = OPTION_FLAG, .offset = offsetof(arguments, json)},
     {.name = "--png",
      .value = "DIR",

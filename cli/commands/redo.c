@@ -8,12 +8,7 @@ static void defaults(void* given)
 }
 
 static const command_option options[] = {
-    {.name = "P.auxshell",
-     .text = "the document",
-     .kind = OPTION_TEXT,
-     .operand = true,
-     .required = true,
-     .offset = offsetof(walk_arguments, document)},
+    OPTION_DOCUMENT(walk_arguments),
     {.name = "--times",
      .value = "N",
      .text = "changes to redo",

@@ -21,12 +21,7 @@ static void defaults(void* given)
 }
 
 static const command_option options[] = {
-    {.name = "P.auxshell",
-     .text = "the document",
-     .kind = OPTION_TEXT,
-     .operand = true,
-     .required = true,
-     .offset = offsetof(arguments, document)},
+    OPTION_DOCUMENT(arguments),
     {.name = "--headroom",
      .value = "M",
      .text = "clear height that people need, in metres whatever the document's unit",
