@@ -36,7 +36,11 @@ int LLVMFuzzerInitialize(int* argc, char*** argv)
             rim[count++] = h;
     const ax_rim_part parts[2] = {
         {AX_RIM_FIXED, 2, rim, places, {0}},
-        {AX_RIM_SLIDE, count - 2, rim + 2, NULL, {AX_CURVE_CIRCLE, true, 3, circle}},
+        {AX_RIM_SLIDE,
+         count - 2,
+         rim + 2,
+         NULL,
+         {.kind = AX_CURVE_CIRCLE, .closed = true, .count = 3, .points = circle}},
     };
     promise(ax_form_set_rim(form, 2, parts, NULL) == AX_OK);
     ax_form_constraint held = {.name = "plane", .kind = AX_HELD_PLANE, .count = 4, .hinges = few, .weight = 1};

@@ -85,10 +85,11 @@ static void slide_on_circle(ax_form* form, double radius)
         if (view.linkage->on_rim[h])
             rim[count++] = h;
     double circle[3][3] = {{0, 0, 0}, {0, 0, 1}, {radius, 0, 0}};
-    ax_rim_part part = {.kind = AX_RIM_SLIDE,
-                        .count = count,
-                        .hinges = rim,
-                        .curve = {AX_CURVE_CIRCLE, true, 3, (const double(*)[3])circle}};
+    ax_rim_part part = {
+        .kind = AX_RIM_SLIDE,
+        .count = count,
+        .hinges = rim,
+        .curve = {.kind = AX_CURVE_CIRCLE, .closed = true, .count = 3, .points = (const double(*)[3])circle}};
     ax_error error;
     assert_int_equal(ax_form_set_rim(form, 1, &part, &error), AX_OK);
     ax_free(rim);
@@ -290,15 +291,16 @@ static void constraints_hold(void** state)
             memcpy(places[k], view.deployed[chosen[k]], sizeof places[k]);
             places[k][2] += 0.05;
         }
-        ax_form_constraint c = {.name = "held",
-                                .kind = (ax_held_kind)kind,
-                                .count = count,
-                                .hinges = chosen,
-                                .weight = 1,
-                                .point = {0, places[0][1] + 0.02, 0},
-                                .direction = {0, 1, 0},
-                                .places = (const double(*)[3])places,
-                                .curve = {AX_CURVE_SPLINE, false, count, (const double(*)[3])places}};
+        ax_form_constraint c = {
+            .name = "held",
+            .kind = (ax_held_kind)kind,
+            .count = count,
+            .hinges = chosen,
+            .weight = 1,
+            .point = {0, places[0][1] + 0.02, 0},
+            .direction = {0, 1, 0},
+            .places = (const double(*)[3])places,
+            .curve = {.kind = AX_CURVE_SPLINE, .count = count, .points = (const double(*)[3])places}};
         ax_error error;
         assert_int_equal(ax_form_put_constraint(form, &c, &error), AX_OK);
         ax_form_report before = measured(form);
