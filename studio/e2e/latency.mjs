@@ -1,5 +1,5 @@
 // From brush movement to the new deployed state on screen, measured in the page while a hand paints: prints a table. Started by hand on
-// a quiet machine: cd build/studio && AUXSHELL=... AUXSHELL_ROOT=... node e2e/latency.mjs [PANELS...]
+// a quiet machine: cd build/studio && AUXSHELL=$PWD/../release/bin/auxshell AUXSHELL_ROOT=$PWD/../.. node e2e/latency.mjs [PANELS...]
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { Hand, Studio, launch } from "./studio.mjs";

@@ -1,5 +1,5 @@
 // Pictures of the studio at work: the gallery's into studio/public/examples, those of the README into docs/pictures.
-// Started by hand after what they show has changed: cd build/studio && AUXSHELL=... AUXSHELL_ROOT=... node e2e/pictures.mjs
+// Started by hand after what they show has changed: cd build/studio && AUXSHELL=$PWD/../release/bin/auxshell AUXSHELL_ROOT=$PWD/../.. node e2e/pictures.mjs
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { Hand, Studio, launch } from "./studio.mjs";
