@@ -3,6 +3,7 @@
 #include "ax/document.h"
 #include "ax/export.h"
 #include "document/schema.h"
+#include "file.h"
 #include "support/sample.h"
 
 #include <stdint.h>
@@ -17,12 +18,6 @@ int LLVMFuzzerInitialize(int* argc, char*** argv);
 static char path[] = "/dev/shm/fuzz_document_XXXXXX";
 static unsigned char* original;
 static size_t original_size;
-
-static void promise(bool kept)
-{
-    if (!kept)
-        abort();
-}
 
 static void remove_file(void)
 {
@@ -39,21 +34,8 @@ int LLVMFuzzerInitialize(int* argc, char*** argv)
     atexit(remove_file);
     promise(ax_document_save(path, &design, NULL) == AX_OK);
     ax_design_free(&design);
-    FILE* in = fopen(path, "rb");
-    promise(in);
-    fseek(in, 0, SEEK_END);
-    original_size = (size_t)ftell(in);
-    rewind(in);
-    original = malloc(original_size);
-    promise(fread(original, 1, original_size, in) == original_size);
-    fclose(in);
+    original = read_file(path, &original_size);
     return 0;
-}
-
-static void write_file(const unsigned char* bytes, size_t size)
-{
-    FILE* out = fopen(path, "wb");
-    promise(out && fwrite(bytes, 1, size, out) == size && fclose(out) == 0);
 }
 
 typedef struct edit {
@@ -67,14 +49,14 @@ static void change_bytes(const edit* edits, size_t count)
     memcpy(bytes, original, original_size);
     for (size_t k = 0; k < count; ++k) // the row chooses the beginning of the file more often than its size would
         bytes[edits[k].place % (edits[k].row % 2 ? original_size : 8192)] = edits[k].value;
-    write_file(bytes, original_size);
+    write_file(path, bytes, original_size);
     free(bytes);
 }
 
 // Even rows change a byte of an array, odd ones a property.
 static void change_values(const edit* edits, size_t count)
 {
-    write_file(original, original_size);
+    write_file(path, original, original_size);
     sqlite3* db;
     promise(sqlite3_open(path, &db) == SQLITE_OK);
     sqlite3_exec(db, "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; BEGIN", NULL, NULL, NULL);

@@ -2,6 +2,7 @@
 // walked along, edited and opened again.
 #include "ax/session.h"
 #include "document/schema.h"
+#include "file.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -15,12 +16,6 @@ int LLVMFuzzerInitialize(int* argc, char*** argv);
 static char folder[] = "/dev/shm/fuzz_session_XXXXXX", path[64];
 static unsigned char* original;
 static size_t original_size;
-
-static void promise(bool kept)
-{
-    if (!kept)
-        abort();
-}
 
 static void remove_folder(void)
 {
@@ -53,21 +48,8 @@ int LLVMFuzzerInitialize(int* argc, char*** argv)
     promise(ax_session_undo(session, NULL, NULL) == AX_OK);
     ax_session_close(session);
     ax_recipe_free(recipe);
-    FILE* in = fopen(path, "rb");
-    promise(in);
-    fseek(in, 0, SEEK_END);
-    original_size = (size_t)ftell(in);
-    rewind(in);
-    original = malloc(original_size);
-    promise(fread(original, 1, original_size, in) == original_size);
-    fclose(in);
+    original = read_file(path, &original_size);
     return 0;
-}
-
-static void write_file(const unsigned char* bytes)
-{
-    FILE* out = fopen(path, "wb");
-    promise(out && fwrite(bytes, 1, original_size, out) == original_size && fclose(out) == 0);
 }
 
 static void change_bytes(const uint8_t* edits, size_t size)
@@ -76,7 +58,7 @@ static void change_bytes(const uint8_t* edits, size_t size)
     memcpy(bytes, original, original_size);
     for (; size >= 4; edits += 4, size -= 4) // three bytes of place: some beyond the tables' roots
         bytes[(edits[0] | edits[1] << 8 | (edits[2] % 4) << 16) % original_size] = edits[3];
-    write_file(bytes);
+    write_file(path, bytes, original_size);
     free(bytes);
 }
 
@@ -90,7 +72,7 @@ static void change_values(const uint8_t* edits, size_t size)
         {"session", "folder"}, {"checkpoint", "form"}, {"checkpoint", "step"}, {"checkpoint", "digest"}};
     static const char* const values[] = {"0",   "1",     "2",          "3",       "4",   "-1",    "NULL",
                                          "'x'", "x'00'", "2147483647", "1 << 40", "1.5", "9e999", "zeroblob(40)"};
-    write_file(original);
+    write_file(path, original, original_size);
     sqlite3* db;
     promise(sqlite3_open(path, &db) == SQLITE_OK);
     sqlite3_exec(db, "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; BEGIN", NULL, NULL, NULL);

@@ -94,32 +94,31 @@ def ply(nodes, links):
     return node
 
 
+def blend(nodes, links, share, first, second):
+    """`share` of the second, the rest of the first."""
+    node = nodes.new("ShaderNodeMixShader")
+    node.inputs[0].default_value = share
+    links.new(first.outputs[0], node.inputs[1])
+    links.new(second.outputs[0], node.inputs[2])
+    return node
+
+
+def tinted(nodes, kind, colour):
+    node = nodes.new(kind)
+    node.inputs[0].default_value = (*colour, 1)
+    return node
+
+
 def fabric(nodes, links):
-    cloth = principled(nodes, (0.86, 0.83, 0.77), 0.9)
-    through = nodes.new("ShaderNodeBsdfTranslucent")
-    through.inputs[0].default_value = (0.9, 0.83, 0.70, 1)
-    mix = nodes.new("ShaderNodeMixShader")
-    mix.inputs[0].default_value = 0.28
-    links.new(cloth.outputs[0], mix.inputs[1])
-    links.new(through.outputs[0], mix.inputs[2])
-    return mix
+    through = tinted(nodes, "ShaderNodeBsdfTranslucent", (0.9, 0.83, 0.70))
+    return blend(nodes, links, 0.28, principled(nodes, (0.86, 0.83, 0.77), 0.9), through)
 
 
 def translucent(nodes, links):
-    skin = principled(nodes, (0.72, 0.83, 0.86), 0.18)
-    through = nodes.new("ShaderNodeBsdfTranslucent")
-    through.inputs[0].default_value = (0.80, 0.92, 0.95, 1)
-    clear = nodes.new("ShaderNodeBsdfTransparent")
-    clear.inputs[0].default_value = (0.86, 0.95, 0.97, 1)
-    inner = nodes.new("ShaderNodeMixShader")
-    inner.inputs[0].default_value = 0.55
-    links.new(skin.outputs[0], inner.inputs[1])
-    links.new(through.outputs[0], inner.inputs[2])
-    outer = nodes.new("ShaderNodeMixShader")
-    outer.inputs[0].default_value = 0.35
-    links.new(inner.outputs[0], outer.inputs[1])
-    links.new(clear.outputs[0], outer.inputs[2])
-    return outer
+    through = tinted(nodes, "ShaderNodeBsdfTranslucent", (0.80, 0.92, 0.95))
+    clear = tinted(nodes, "ShaderNodeBsdfTransparent", (0.86, 0.95, 0.97))
+    skin = blend(nodes, links, 0.55, principled(nodes, (0.72, 0.83, 0.86), 0.18), through)
+    return blend(nodes, links, 0.35, skin, clear)
 
 
 def metal(nodes, links):
