@@ -149,6 +149,29 @@ static void a_linkage_that_contradicts_itself_is_refused(void** state)
     ax_design_free(&design);
 }
 
+// A flat sheet's cover is its area without gap or overlap: as much as its rim encloses.
+static void the_cover_closes_holes_and_what_is_open_along_the_rim(void** state)
+{
+    (void)state;
+    ax_design design = sample_design();
+    const ax_linkage* l = &design.linkage;
+    ax_mesh cover = ax_linkage_cover(l, (const double(*)[3])design.deployed);
+    assert_int_equal(cover.vertex_count, l->hinge_count + l->hole_count);
+    int* order = AX_NEW(int, l->hinge_count);
+    int rim = ax_linkage_rim(l, order);
+    double enclosed = 0, covered = 0;
+    for (int k = 0; k < rim; ++k) // clockwise, as the openings run
+        enclosed -= 0.5 * ax_cross2(design.deployed[order[k]], design.deployed[order[(k + 1) % rim]]);
+    for (int f = 0; f < cover.face_count; ++f) {
+        const int* v = cover.faces[f];
+        covered += 0.5 * ax_orient2(cover.positions[v[0]], cover.positions[v[1]], cover.positions[v[2]]);
+    }
+    assert_near(covered, enclosed, 1e-12 * fabs(enclosed));
+    ax_free(order);
+    ax_mesh_free(&cover);
+    ax_design_free(&design);
+}
+
 static void units_have_names_and_lengths(void** state)
 {
     (void)state;
@@ -169,6 +192,7 @@ int main(void)
         cmocka_unit_test(a_new_lattice_is_numbered_from_its_own_corner),
         cmocka_unit_test(a_copy_holds_the_same_and_nothing_in_common),
         cmocka_unit_test(a_linkage_that_contradicts_itself_is_refused),
+        cmocka_unit_test(the_cover_closes_holes_and_what_is_open_along_the_rim),
         cmocka_unit_test(units_have_names_and_lengths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Shade and room as users meet them: shade, space. AUXSHELL names the program."""
 import json
+import re
 import unittest
 
 import support.tap
@@ -49,6 +50,19 @@ class Shade(CommandCase):
         self.assertTrue(30 <= day["directions"] <= 34, day["directions"])  # 16 of 24 hours in steps of half an hour
         self.assertTrue(0.05 < day["opacity"] < 0.5)
         self.refuse(4, "does not rise", "shade", bowl, "--place", "85,0", "--date", "2026-12-21")
+
+    def test_a_small_shell_stands_near_its_shadow(self):
+        height = {}
+        for radius in (0.2, 20):  # a model, and a roof
+            scaled = [dict(BOWL[0], radius=radius), dict(BOWL[1], radius=0.9 * radius),
+                      {"op": "rim_circle", "radius": 1.1 * radius}, {"op": "gravity", "adopt": True}]
+            shell = self.design(f"bowl-{radius}", scaled)
+            words = self.succeed("shade", shell, *NOON, "--want", f"0,0,{radius / 2},0.3")
+            height[radius] = float(re.search(r"at height (\S+),", words).group(1)) / radius
+            opacity = float(re.search(r"disc 1 +([0-9.]+)", words).group(1))
+            self.assertGreater(opacity, 0.05, words)
+        self.assertLess(height[0.2], -1.1 * 2 / 3)
+        self.assertGreater(height[20], height[0.2] + 0.4)  # 2.5 m under a roof of 44 m
 
     def test_what_is_wrong_is_named(self):
         bowl = self.design("bowl", BOWL)

@@ -165,7 +165,7 @@ static const command_option options[] = {
      .kind = OPTION_NUMBER,
      .lo = -1e9,
      .hi = 1e9,
-     .fallback = "2.5 m below the lowest hinge",
+     .fallback = "2.5 m below the lowest hinge, or a third of the layers' width if that is less",
      .offset = offsetof(arguments, ground)},
     {.name = "--want",
      .value = "X,Y,R,OPACITY",
@@ -286,25 +286,23 @@ static ax_status light(const arguments* a, scene* s, ax_error* error)
     return AX_OK;
 }
 
-static double lowest(const scene* s)
+// What is looked at: the ground under the layers as they hang, where people are, not the long shadows of the evening. Under a small shell
+// it is nearer, so that a model stands over its own shadow as the roof does.
+static void look_below(const arguments* a, scene* s, int cells)
 {
-    double z = INFINITY, first = ax_unit_in_metres(s->designs[0].unit);
+    const double people = 2.5, first = ax_unit_in_metres(s->designs[0].unit);
+    const ax_ray above = {{0, 0, 1}, 1};
+    double lowest = INFINITY;
     for (int k = 0; k < s->count; ++k) {
         const ax_design* d = &s->designs[k];
         for (int h = 0; h < d->linkage.hinge_count; ++h)
-            z = fmin(z, (d->simulated ? d->simulated : d->deployed)[h][2] * ax_unit_in_metres(d->unit) / first +
-                            s->layers[k].move[2]);
+            lowest =
+                fmin(lowest, (d->simulated ? d->simulated : d->deployed)[h][2] * ax_unit_in_metres(d->unit) / first +
+                                 s->layers[k].move[2]);
     }
-    return z;
-}
-
-// What is looked at: the ground under the layers as they hang, where people are, not the long shadows of the evening.
-static void look_below(const arguments* a, scene* s, int cells)
-{
-    double unit = ax_unit_in_metres(s->designs[0].unit);
-    double ground = isnan(a->ground) ? lowest(s) - 2.5 / unit : a->ground;
-    const ax_ray above = {{0, 0, 1}, 1};
-    ax_shade_ground(s->count, s->layers, 1, &above, ground, cells, &s->ground, NULL);
+    ax_shade_ground(s->count, s->layers, 1, &above, 0, cells, &s->ground, NULL);
+    double width = s->ground.cell * fmax(s->ground.columns, s->ground.rows);
+    s->ground.height = isnan(a->ground) ? lowest - fmin(people / first, width / 3) : a->ground;
 }
 
 static ax_status cover_wishes(const arguments* a, scene* s, ax_error* error)

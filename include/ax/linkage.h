@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ax/base.h"
+#include "ax/mesh.h"
 
 typedef struct ax_linkage {
     int triangle_count, hinge_count;
@@ -27,6 +28,10 @@ ax_status ax_linkage_check(const ax_linkage* linkage, ax_error* error);
 // Rim hinges in their order round the shell, along each opening from its first to its last hinge; `order` holds hinge_count. Returns
 // their number.
 int ax_linkage_rim(const ax_linkage* linkage, int* order);
+
+// The linkage as one surface over `hinges`, hinge_count points: its panels, then each hole k as a fan about a vertex hinge_count + k in
+// the middle of its hinges, then what is open along the rim as fans from the first hinge of each opening. The caller frees it.
+ax_mesh ax_linkage_cover(const ax_linkage* linkage, const double (*hinges)[3]);
 
 // Largest magnitude of a panel's column and row, so that its name fits.
 #define AX_PANEL_LIMIT 10000000

@@ -53,17 +53,6 @@ static void add_triangle(shell* s, const double* a, const double* b, const doubl
     s->surface += 0.5 * ax_norm3(normal);
 }
 
-// A loop of hinges closed by triangles to its middle.
-static void add_loop(shell* s, const int* loop, int count)
-{
-    double middle[3] = {0};
-    for (int k = 0; k < count; ++k)
-        for (int d = 0; d < 3; ++d)
-            middle[d] += s->x[loop[k]][d] / count;
-    for (int k = 0; k < count; ++k)
-        add_triangle(s, middle, s->x[loop[k]], s->x[loop[(k + 1) % count]]);
-}
-
 static double lowest_support(const ax_design* d, const double (*x)[3])
 {
     double lowest = INFINITY;
@@ -84,12 +73,12 @@ ax_status ax_space_measure(const ax_design* d, ax_state state, double ground, do
         return ax_fail(error, AX_BAD_INPUT, "There is no such state in space. Deploy the design first.");
     s.ground = isnan(ground) ? lowest_support(d, s.x) : ground;
     s.level = s.ground + headroom;
-    for (int t = 0; t < l->triangle_count; ++t)
-        add_triangle(&s, s.x[l->triangles[t][0]], s.x[l->triangles[t][1]], s.x[l->triangles[t][2]]);
-    for (int k = 0; k < l->hole_count; ++k)
-        add_loop(&s, l->hole_hinges + l->hole_start[k], l->hole_start[k + 1] - l->hole_start[k]);
-    for (int k = 0; k < l->opening_count; ++k)
-        add_loop(&s, l->opening_hinges + l->opening_start[k], l->opening_start[k + 1] - l->opening_start[k]);
+    ax_mesh cover = ax_linkage_cover(l, s.x);
+    for (int k = 0; k < cover.face_count; ++k) {
+        const int* face = cover.faces[k];
+        add_triangle(&s, cover.positions[face[0]], cover.positions[face[1]], cover.positions[face[2]]);
+    }
+    ax_mesh_free(&cover);
     double top = -INFINITY;
     for (int h = 0; h < l->hinge_count; ++h)
         top = fmax(top, s.x[h][2]);

@@ -14,39 +14,6 @@
 
 static const double draping_give = 30;
 
-// Panels, holes as fans about a point in their middle, and what is open along the rim: the open linkage as one surface over the deployed hinges.
-static ax_mesh cover(const ax_form* f)
-{
-    const ax_linkage* l = &f->lattice.linkage;
-    int n = l->hinge_count,
-        faces = l->triangle_count + l->hole_start[l->hole_count] + l->opening_start[l->opening_count];
-    ax_mesh mesh = {.vertex_count = n + l->hole_count, .face_count = 0};
-    mesh.positions = ax_alloc((size_t)mesh.vertex_count, sizeof *mesh.positions);
-    mesh.faces = ax_alloc((size_t)faces, sizeof *mesh.faces);
-    memcpy(mesh.positions, f->deployed, (size_t)n * sizeof *f->deployed);
-    for (int t = 0; t < l->triangle_count; ++t)
-        memcpy(mesh.faces[mesh.face_count++], l->triangles[t], sizeof *mesh.faces);
-    for (int k = 0; k < l->hole_count; ++k) {
-        const int* h = l->hole_hinges + l->hole_start[k];
-        int count = l->hole_start[k + 1] - l->hole_start[k];
-        double* middle = mesh.positions[n + k];
-        memset(middle, 0, 3 * sizeof *middle);
-        for (int i = 0; i < count; ++i) {
-            for (int c = 0; c < 3; ++c)
-                middle[c] += f->deployed[h[i]][c] / count;
-            int* face = mesh.faces[mesh.face_count++];
-            face[0] = h[i], face[1] = h[(i + 1) % count], face[2] = n + k;
-        }
-    }
-    for (int k = 0; k < l->opening_count; ++k)
-        for (int i = l->opening_start[k] + 1; i + 1 < l->opening_start[k + 1]; ++i) {
-            int* face = mesh.faces[mesh.face_count++];
-            face[0] = l->opening_hinges[l->opening_start[k]];
-            face[1] = l->opening_hinges[i], face[2] = l->opening_hinges[i + 1];
-        }
-    return mesh;
-}
-
 // The net of the cover's edges with one tension per length in all of them (Schek 1974, The force density method), held at the rim where it
 // is: its places without a load, and how far an even load sinks them, 1 at most. Both per vertex.
 static void hang_net(const ax_form* f, ax_mesh* net, double* sunk)
@@ -103,69 +70,110 @@ static void aim_rim(const ax_form* f, const double (*at)[3], double (*to)[3])
         }
 }
 
+// Points of a plane: how many or with what weight, their middle, and the sum of their squared distances from it.
+typedef struct cloud {
+    double weight, middle[2], spread;
+} cloud;
+
+// Points are added in any order (Welford 1962).
+static void add_point(cloud* c, const double at[2], double weight)
+{
+    double off[2] = {at[0] - c->middle[0], at[1] - c->middle[1]};
+    c->weight += weight;
+    for (int d = 0; d < 2; ++d) {
+        c->middle[d] += weight / c->weight * off[d];
+        c->spread += weight * off[d] * (at[d] - c->middle[d]);
+    }
+}
+
+// What holds the rim, seen from above: fixed places, and bounded curves with the weight of the hinges on them.
+static cloud cloud_of_holders(const ax_form* f)
+{
+    enum { SAMPLES = 200 };
+    cloud c = {0};
+    for (int k = 0; k < f->rim_count; ++k) {
+        const ax_rim_part* part = f->rim + k;
+        const ax_curve* curve = f->rim_holder[k].curve;
+        if (part->kind == AX_RIM_FIXED)
+            for (int i = 0; i < part->count; ++i)
+                add_point(&c, part->places[i], 1);
+        else if (isfinite(ax_curve_extent(curve).to)) {
+            double whole = ax_curve_length(curve, ax_curve_extent(curve).to), x[3];
+            for (int i = 0; i < SAMPLES; ++i) {
+                ax_curve_point(curve, ax_curve_at_length(curve, whole * (i + 0.5) / SAMPLES), x);
+                add_point(&c, x, (double)part->count / SAMPLES);
+            }
+        }
+    }
+    return c;
+}
+
+static cloud cloud_of_rim(const ax_form* f)
+{
+    cloud c = {0};
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
+        if (f->lattice.linkage.on_rim[h])
+            add_point(&c, f->lattice.hinges[h], 1);
+    return c;
+}
+
+// z -> turn z + shift of the sheet's plane, as complex numbers, onto a level one.
+typedef struct laying {
+    double turn[2], shift[2], level;
+} laying;
+
+static void lay(ax_form* f, const laying* at)
+{
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h) {
+        const double* z = f->lattice.hinges[h];
+        f->deployed[h][0] = at->turn[0] * z[0] - at->turn[1] * z[1] + at->shift[0];
+        f->deployed[h][1] = at->turn[1] * z[0] + at->turn[0] * z[1] + at->shift[1];
+        f->deployed[h][2] = at->level;
+    }
+}
+
+// The laying that brings the rim nearest to `to`, in least squares.
+static laying fit(const ax_form* f, const cloud* rim, const double (*to)[3])
+{
+    const ax_linkage* l = &f->lattice.linkage;
+    double mean[3] = {0, 0, 0}, re = 0, im = 0;
+    for (int h = 0; h < l->hinge_count; ++h)
+        for (int c = 0; c < 3 && l->on_rim[h]; ++c)
+            mean[c] += to[h][c] / rim->weight;
+    for (int h = 0; h < l->hinge_count; ++h)
+        if (l->on_rim[h]) {
+            double x = f->lattice.hinges[h][0] - rim->middle[0], y = f->lattice.hinges[h][1] - rim->middle[1];
+            double u = to[h][0] - mean[0], v = to[h][1] - mean[1];
+            re += (x * u + y * v) / rim->spread, im += (x * v - y * u) / rim->spread;
+        }
+    return (laying){
+        {re, im},
+        {mean[0] - re * rim->middle[0] + im * rim->middle[1], mean[1] - im * rim->middle[0] - re * rim->middle[1]},
+        mean[2]};
+}
+
 // Lays the sheet, turned, shifted and scaled as a whole, as near as it goes to what its rim is held by (Besl and McKay 1992, iterated
 // closest points), from its own middle and the middle of those; then puts the rim there. Elsewhere the sheet lies level.
 static void lay_on_rim(ax_form* f)
 {
-    enum { ROUNDS = 50, SAMPLES = 200 };
+    enum { ROUNDS = 50 };
     const ax_linkage* l = &f->lattice.linkage;
     double(*to)[3] = ax_calloc((size_t)l->hinge_count, sizeof *to);
-    double middle[2] = {0, 0}, spread = 0, weight = 0; // of what holds the rim, by numbers of hinges
-    for (int pass = 0; pass < 2; ++pass) {
-        for (int k = 0; k < f->rim_count; ++k) {
-            const ax_rim_part* part = f->rim + k;
-            bool fixed = part->kind == AX_RIM_FIXED;
-            const ax_curve* curve = f->rim_holder[k].curve;
-            bool bounded = !fixed && isfinite(ax_curve_extent(curve).to);
-            double whole = bounded ? ax_curve_length(curve, ax_curve_extent(curve).to) : 0;
-            int count = fixed ? part->count : SAMPLES;
-            for (int i = 0; i < count && (fixed || bounded); ++i) {
-                double x[3];
-                if (fixed)
-                    memcpy(x, part->places[i], sizeof x);
-                else
-                    ax_curve_point(curve, ax_curve_at_length(curve, whole * (i + 0.5) / count), x);
-                double share = (double)part->count / count;
-                for (int c = 0; c < 2 && pass == 0; ++c)
-                    middle[c] += share * x[c];
-                weight += pass == 0 ? share : 0;
-                spread += pass == 1 ? share * (pow(x[0] - middle[0], 2) + pow(x[1] - middle[1], 2)) : 0;
-            }
-        }
-        for (int c = 0; c < 2 && pass == 0; ++c)
-            middle[c] /= fmax(weight, 1);
+    cloud rim = cloud_of_rim(f), holders = cloud_of_holders(f);
+    laying at = {.turn = {1, 0}};
+    if (holders.weight > 0) {
+        if (holders.spread > 0)
+            at.turn[0] = sqrt(holders.spread / holders.weight * rim.weight / rim.spread);
+        for (int d = 0; d < 2; ++d)
+            at.shift[d] = holders.middle[d] - at.turn[0] * rim.middle[d];
     }
-    double own[2] = {0, 0}, own_spread = 0;
-    int rim = 0;
-    for (int h = 0; h < l->hinge_count; ++h)
-        for (int c = 0; c < 2 && l->on_rim[h]; rim += c == 0, ++c)
-            own[c] += f->lattice.hinges[h][c];
-    own[0] /= rim, own[1] /= rim;
-    for (int h = 0; h < l->hinge_count; ++h)
-        own_spread += l->on_rim[h] ? pow(ax_distance2(f->lattice.hinges[h], own), 2) : 0;
-    // the map z -> turn z + shift of the plane, as complex numbers
-    double turn[2] = {weight > 0 && spread > 0 ? sqrt(spread / weight * rim / own_spread) : 1, 0}, shift[2], level = 0;
-    shift[0] = weight > 0 ? middle[0] - turn[0] * own[0] : 0, shift[1] = weight > 0 ? middle[1] - turn[0] * own[1] : 0;
+    lay(f, &at);
     for (int round = 0; round <= ROUNDS; ++round) {
-        for (int h = 0; h < l->hinge_count; ++h) {
-            const double* z = f->lattice.hinges[h];
-            f->deployed[h][0] = turn[0] * z[0] - turn[1] * z[1] + shift[0];
-            f->deployed[h][1] = turn[1] * z[0] + turn[0] * z[1] + shift[1];
-            f->deployed[h][2] = level;
-        }
         aim_rim(f, (const double(*)[3])f->deployed, to);
-        double re = 0, im = 0, mean[3] = {0, 0, 0};
-        for (int h = 0; h < l->hinge_count; ++h)
-            for (int c = 0; c < 3 && l->on_rim[h]; ++c)
-                mean[c] += to[h][c] / rim;
-        for (int h = 0; h < l->hinge_count; ++h)
-            if (l->on_rim[h]) {
-                double x = f->lattice.hinges[h][0] - own[0], y = f->lattice.hinges[h][1] - own[1];
-                double u = to[h][0] - mean[0], v = to[h][1] - mean[1];
-                re += (x * u + y * v) / own_spread, im += (x * v - y * u) / own_spread;
-            }
-        turn[0] = re, turn[1] = im, level = mean[2];
-        shift[0] = mean[0] - re * own[0] + im * own[1], shift[1] = mean[1] - im * own[0] - re * own[1];
+        if (round < ROUNDS) {
+            at = fit(f, &rim, (const double(*)[3])to);
+            lay(f, &at);
+        }
     }
     for (int h = 0; h < l->hinge_count; ++h)
         if (l->on_rim[h])
@@ -221,7 +229,7 @@ ax_status ax_form_drape(ax_form* f, double depth, const ax_progress* progress, a
     ax_form_set_dynamics(f, &opening);
     ax_form_build(f);
     lay_on_rim(f);
-    ax_mesh film = cover(f);
+    ax_mesh film = ax_linkage_cover(l, (const double(*)[3])f->deployed);
     double* sunk = AX_NEW(double, film.vertex_count);
     hang_net(f, &film, sunk);
     for (int i = 0; i < film.vertex_count; ++i)

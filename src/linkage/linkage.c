@@ -162,3 +162,36 @@ void ax_panel_name(const ax_linkage* linkage, int triangle, char text[16])
         *--first = (char)('A' + (n - 1) % 26);
     snprintf(text, 16, "%s%s%d", row < 0 ? "-" : "", first, place < 0 ? place : place + 1);
 }
+
+static int loops_end(const int* start, int count)
+{
+    return count ? start[count] : 0;
+}
+
+ax_mesh ax_linkage_cover(const ax_linkage* l, const double (*hinges)[3])
+{
+    int n = l->hinge_count;
+    int most =
+        l->triangle_count + loops_end(l->hole_start, l->hole_count) + loops_end(l->opening_start, l->opening_count);
+    ax_mesh mesh = {.vertex_count = n + l->hole_count};
+    mesh.positions = ax_calloc((size_t)mesh.vertex_count, sizeof *mesh.positions);
+    mesh.faces = ax_alloc((size_t)most, sizeof *mesh.faces);
+    memcpy(mesh.positions, hinges, (size_t)n * sizeof *hinges);
+    memcpy(mesh.faces, l->triangles, (size_t)l->triangle_count * sizeof *mesh.faces);
+    mesh.face_count = l->triangle_count;
+    for (int k = 0; k < l->hole_count; ++k) {
+        const int* loop = l->hole_hinges + l->hole_start[k];
+        int count = l->hole_start[k + 1] - l->hole_start[k];
+        for (int i = 0; i < count; ++i) {
+            for (int c = 0; c < 3; ++c)
+                mesh.positions[n + k][c] += hinges[loop[i]][c] / count;
+            memcpy(mesh.faces[mesh.face_count++], (int[3]){loop[i], loop[(i + 1) % count], n + k}, sizeof *mesh.faces);
+        }
+    }
+    for (int k = 0; k < l->opening_count; ++k) {
+        const int* loop = l->opening_hinges + l->opening_start[k];
+        for (int i = 1; i + 1 < l->opening_start[k + 1] - l->opening_start[k]; ++i)
+            memcpy(mesh.faces[mesh.face_count++], (int[3]){loop[0], loop[i], loop[i + 1]}, sizeof *mesh.faces);
+    }
+    return mesh;
+}

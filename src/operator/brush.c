@@ -99,34 +99,23 @@ typedef struct skin {
     int *start, *corner; // per vertex: its corners, 3 face + k
 } skin;
 
-static void put_mean(const int* hinges, int count, const ax_form_view* view, double deployed[3], double sheet[2])
-{
-    for (int k = 0; k < count; ++k) {
-        for (int d = 0; d < 3; ++d)
-            deployed[d] += view->deployed[hinges[k]][d] / count;
-        for (int d = 0; d < 2; ++d)
-            sheet[d] += view->sheet[hinges[k]][d] / count;
-    }
-}
-
+// What is open along the rim stays open: strokes go round it.
 static skin make_skin(const ax_form_view* view)
 {
     const ax_linkage* l = view->linkage;
     int hinges = l->hinge_count, fans = l->hole_count ? l->hole_start[l->hole_count] : 0;
-    skin s = {.vertex_count = hinges + l->hole_count, .face_count = l->triangle_count + fans};
-    s.deployed = ax_calloc((size_t)s.vertex_count, sizeof *s.deployed);
+    ax_mesh cover = ax_linkage_cover(l, view->deployed);
+    skin s = {.vertex_count = cover.vertex_count,
+              .face_count = l->triangle_count + fans,
+              .deployed = cover.positions,
+              .faces = cover.faces};
     s.sheet = ax_calloc((size_t)s.vertex_count, sizeof *s.sheet);
-    s.faces = ax_alloc((size_t)s.face_count, sizeof *s.faces);
-    memcpy(s.deployed, view->deployed, (size_t)hinges * sizeof *s.deployed);
     memcpy(s.sheet, view->sheet, (size_t)hinges * sizeof *s.sheet);
-    memcpy(s.faces, l->triangles, (size_t)l->triangle_count * sizeof *s.faces);
-    int f = l->triangle_count;
     for (int hole = 0; hole < l->hole_count; ++hole) {
-        const int* loop = l->hole_hinges + l->hole_start[hole];
         int sides = l->hole_start[hole + 1] - l->hole_start[hole];
-        put_mean(loop, sides, view, s.deployed[hinges + hole], s.sheet[hinges + hole]);
-        for (int k = 0; k < sides; ++k, ++f)
-            memcpy(s.faces[f], (int[3]){loop[k], loop[(k + 1) % sides], hinges + hole}, sizeof *s.faces);
+        for (int k = l->hole_start[hole]; k < l->hole_start[hole + 1]; ++k)
+            for (int d = 0; d < 2; ++d)
+                s.sheet[hinges + hole][d] += view->sheet[l->hole_hinges[k]][d] / sides;
     }
     s.start = AX_NEW0(int, s.vertex_count + 1);
     s.corner = AX_NEW(int, 3 * (size_t)s.face_count);
