@@ -14,6 +14,11 @@ void walk_print_place(const ax_session* session)
         printf("Step %d failed when it was played again: %s\n", failed + 1, why);
 }
 
+void walk_defaults(void* given)
+{
+    ((walk_arguments*)given)->times = 1;
+}
+
 ax_status walk(const walk_arguments* a, const char* program,
                ax_status (*step)(ax_session* session, const ax_progress* progress, ax_error* error), ax_error* error)
 {

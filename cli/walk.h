@@ -1,12 +1,22 @@
 // What undo and redo share.
 #pragma once
 
+#include "options.h"
+
 #include "ax/session.h"
 
 typedef struct walk_arguments {
     const char* document;
     int times;
 } walk_arguments;
+
+void walk_defaults(void* arguments);
+#define WALK_OPTIONS(verb)                                                                                             \
+    OPTION_DOCUMENT(walk_arguments),                                                                                   \
+    {                                                                                                                  \
+        .name = "--times", .value = "N", .text = "changes to " verb, .kind = OPTION_INTEGER, .lo = 1, .hi = 1000000,   \
+        .offset = offsetof(walk_arguments, times)                                                                      \
+    }
 
 // Takes so many steps along the history (`step`: ax_session_undo or ax_session_redo), and prints where that led; `program` is who
 // does it.

@@ -1,22 +1,7 @@
 // auxshell undo: go back in a document's history.
-#include "options.h"
 #include "walk.h"
 
-static void defaults(void* given)
-{
-    ((walk_arguments*)given)->times = 1;
-}
-
-static const command_option options[] = {
-    OPTION_DOCUMENT(walk_arguments),
-    {.name = "--times",
-     .value = "N",
-     .text = "changes to undo",
-     .kind = OPTION_INTEGER,
-     .lo = 1,
-     .hi = 1000000,
-     .offset = offsetof(walk_arguments, times)},
-};
+static const command_option options[] = {WALK_OPTIONS("undo")};
 
 static ax_status run(const void* given, ax_error* error)
 {
@@ -31,6 +16,6 @@ const command command_undo = {
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(walk_arguments),
-    .defaults = defaults,
+    .defaults = walk_defaults,
     .run = run,
 };

@@ -19,6 +19,8 @@
         .name = #member, .title = title_, .unit = "", .kind = AX_FIELD_INTEGER, .offset = offsetof(T, member),         \
         .lo = lo_, .hi = hi_, __VA_ARGS__                                                                              \
     }
+// How long operators settle that move the form: arguments have `int steps`.
+#define AX_STEPS(T) AX_INTEGER(T, steps, "Steps", 0, 100000, .doc = "Iterations; 0: until the form is at rest.")
 #define AX_FLAG(T, member, title_, ...)                                                                                \
     {                                                                                                                  \
         .name = #member, .title = title_, .unit = "", .kind = AX_FIELD_FLAG, .offset = offsetof(T, member),            \

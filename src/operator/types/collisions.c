@@ -13,7 +13,7 @@ static void defaults(void* given)
 
 static const ax_field fields[] = {
     AX_FLAG(arguments, on, "On", .doc = "Whether the sheet may grow."),
-    AX_INTEGER(arguments, steps, "Steps", 0, 100000, .doc = "Iterations; 0: until the form is at rest."),
+    AX_STEPS(arguments),
 };
 
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)

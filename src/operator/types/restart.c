@@ -14,7 +14,7 @@ static void defaults(void* given)
 static const ax_field fields[] = {
     AX_NUMBER(arguments, height, "Height", "", -2, 2,
               .doc = "Of the dome, over the radius of the sheet; negative: a bowl."),
-    AX_INTEGER(arguments, steps, "Steps", 0, 100000, .doc = "Iterations; 0: until the form is at rest."),
+    AX_STEPS(arguments),
 };
 
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)

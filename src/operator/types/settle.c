@@ -5,7 +5,7 @@ typedef struct arguments {
 } arguments;
 
 static const ax_field fields[] = {
-    AX_INTEGER(arguments, steps, "Steps", 0, 100000, .doc = "Iterations; 0: until the form is at rest."),
+    AX_STEPS(arguments),
 };
 
 static ax_status apply(const ax_operator_context* context, const void* given, ax_error* error)
