@@ -275,11 +275,12 @@ static void a_document_of_a_coming_version_can_be_reached(void** state)
         ax_document_schema.steps[0],
         ax_document_schema.steps[1],
         ax_document_schema.steps[2],
+        ax_document_schema.steps[3],
         "ALTER TABLE property RENAME TO old;"
         "CREATE TABLE property(design INTEGER, name TEXT NOT NULL, value, note TEXT, PRIMARY KEY(design, name));"
-        "INSERT INTO property SELECT design, name, value, 'from version 3' FROM old; DROP TABLE old",
+        "INSERT INTO property SELECT design, name, value, 'from version 4' FROM old; DROP TABLE old",
     };
-    const ax_schema next = {.version = 4, .steps = steps};
+    const ax_schema next = {.version = 5, .steps = steps};
     save(path, &sample);
     ax_design back = upgrade(&next, path);
     assert_same_design(&sample, &back);

@@ -1015,7 +1015,7 @@ static void a_document_of_version_1_is_upgraded_by_its_first_change(void** state
     assert_same_design(design, &was);
     snapshot beginning = look(s);
     apply(s, "{\"op\": \"fill\", \"value\": 1.4}");
-    assert_int_equal(ask_number(path, "PRAGMA user_version"), 3);
+    assert_int_equal(ask_number(path, "PRAGMA user_version"), ax_document_schema.version);
     assert_ok(ax_session_design(s, NULL, &design, &error), &error);
     assert_null(design);
     ax_session_close(s);
@@ -1064,9 +1064,144 @@ static void a_document_of_version_2_is_upgraded_by_its_first_change(void** state
     assert_int_equal(ax_session_at(s), 4);
     assert_int_equal(ask_number(path, "PRAGMA user_version"), 2);
     apply(s, "{\"op\": \"fill\", \"value\": 1.3}");
-    assert_int_equal(ask_number(path, "PRAGMA user_version"), 3);
+    assert_int_equal(ask_number(path, "PRAGMA user_version"), ax_document_schema.version);
     ax_session_close(s);
     assert_sound(path);
+}
+
+// The file was written by the program when documents had version 3: without variants.
+static void a_document_of_version_3_is_upgraded_by_its_first_variant(void** state)
+{
+    (void)state;
+    copy_file(AX_SOURCE_DIR "/tests/documents/version-3.auxshell", path);
+    ax_session* s = open_session(path);
+    ax_error error;
+    const ax_variant* variants;
+    assert_int_equal(ax_session_variants(s, &variants), 0);
+    assert_int_equal(ask_number(path, "PRAGMA user_version"), 3);
+    snapshot was = look(s);
+    assert_ok(ax_session_keep_variant(s, "first", "{}", &error), &error);
+    assert_int_equal(ask_number(path, "PRAGMA user_version"), ax_document_schema.version);
+    ax_session_close(s);
+    assert_sound(path);
+    s = open_session(path);
+    assert_shows(s, &was);
+    assert_int_equal(ax_session_variants(s, &variants), 1);
+    assert_true(variants->present);
+    ax_session_close(s);
+    forget(&was);
+}
+
+static void assert_variant(ax_session* s, const char* name, const snapshot* expected)
+{
+    ax_error error;
+    ax_form* form;
+    size_t size;
+    assert_ok(ax_session_variant_form(s, name, NULL, &form, &error), &error);
+    void* bytes = ax_form_save(form, &size);
+    assert_int_equal(size, expected->size);
+    assert_memory_equal(bytes, expected->form, size);
+    ax_free(bytes);
+    ax_form_free(form);
+}
+
+// Where no moment leads any more, after the document was closed, copied, and had its checkpoints lost.
+static void variants_outlive_the_history_that_led_to_them(void** state)
+{
+    (void)state;
+    const ax_variant* variants;
+    ax_error error;
+    ax_session* s = create(path, 2, (const char*[]){CIRCLE(40), "{\"op\": \"fill\", \"value\": 1.5}"});
+    snapshot low = look(s);
+    assert_ok(ax_session_keep_variant(s, "low", "{\"panels\": 40}", &error), &error);
+    apply(s, "{\"op\": \"rim_fixed\"}");
+    snapshot held = look(s);
+    assert_ok(ax_session_keep_variant(s, "held", "", &error), &error);
+    undo(s);
+    undo(s);
+    apply(s, "{\"op\": \"fill\", \"value\": 1.2}"); // drops the moments that led to both
+    snapshot now = look(s);
+    ax_session_close(s);
+    for (int lost = 0; lost < 2; ++lost) {
+        s = open_session(path);
+        assert_shows(s, &now);
+        assert_int_equal(ax_session_variants(s, &variants), 2);
+        assert_string_equal(variants[0].name, "low");
+        assert_string_equal(variants[0].figures, "{\"panels\": 40}");
+        assert_int_equal(variants[1].at, 3);
+        assert_true(fabs(variants[1].time - (double)time(NULL)) < 100);
+        assert_false(variants[0].present || variants[1].present);
+        assert_variant(s, "low", &low);
+        assert_variant(s, "held", &held);
+        assert_shows(s, &now); // looking changes nothing
+        assert_ok(ax_session_copy(s, other, &error), &error);
+        ax_session_close(s);
+        run_sql(path, "DELETE FROM checkpoint");
+    }
+    assert_sound(path);
+
+    s = open_session(other);
+    assert_ok(ax_session_take_variant(s, "held", NULL, &error), &error);
+    assert_shows(s, &held);
+    assert_int_equal(ax_session_variants(s, &variants), 2);
+    assert_true(variants[1].present && !variants[0].present);
+    assert_int_equal(moments(s), 3);
+    undo(s);
+    assert_shows(s, &now);
+    redo(s);
+    assert_shows(s, &held);
+    assert_int_equal(ax_session_take_variant(s, "high", NULL, &error), AX_BAD_INPUT);
+    assert_says(&error, "no variant \"high\"");
+
+    // what only a variant needed goes with it
+    apply(s, "{\"op\": \"rim_free\"}");
+    undo(s);
+    assert_ok(ax_session_keep_variant(s, "low", "again", &error), &error); // under a name that is taken: instead of it
+    assert_int_equal(ax_session_variants(s, &variants), 2);
+    assert_string_equal(variants[0].figures, "again");
+    assert_ok(ax_session_drop_variant(s, "low", &error), &error);
+    assert_ok(ax_session_drop_variant(s, "held", &error), &error);
+    assert_int_equal(ax_session_drop_variant(s, "held", &error), AX_BAD_INPUT);
+    assert_shows(s, &held);
+    undo(s);
+    apply(s, "{\"op\": \"rim_fixed\"}");
+    ax_session_close(s);
+    assert_int_equal(ask_number(other, "SELECT count(*) FROM step"), 3);
+    assert_int_equal(ask_number(other, "SELECT count(*) FROM checkpoint WHERE step NOT IN (SELECT id FROM step)"), 0);
+    assert_sound(other);
+    forget(&low);
+    forget(&held);
+    forget(&now);
+}
+
+static void variants_have_names_and_are_not_too_many(void** state)
+{
+    (void)state;
+    const ax_variant* variants;
+    ax_error error;
+    char name[AX_VARIANT_NAME + 2];
+    ax_session* s = create(path, 1, (const char*[]){CIRCLE(40)});
+    memset(name, 'x', sizeof name);
+    name[sizeof name - 1] = 0;
+    assert_int_equal(ax_session_keep_variant(s, name, "", &error), AX_USAGE);
+    assert_int_equal(ax_session_keep_variant(s, "", "", &error), AX_USAGE);
+    for (int k = 0; k < AX_VARIANTS_MOST; ++k) {
+        snprintf(name, sizeof name, "%d", k);
+        assert_ok(ax_session_keep_variant(s, name, "", &error), &error);
+    }
+    assert_int_equal(ax_session_keep_variant(s, "one more", "", &error), AX_USAGE);
+    assert_ok(ax_session_keep_variant(s, name, "", &error), &error);
+    assert_int_equal(ax_session_variants(s, &variants), AX_VARIANTS_MOST);
+    ax_session* looker;
+    assert_ok(ax_session_open(path, false, NULL, NULL, &looker, &error), &error);
+    assert_int_equal(ax_session_variants(looker, &variants), AX_VARIANTS_MOST);
+    assert_int_equal(ax_session_keep_variant(looker, "mine", "", &error), AX_FAILED);
+    assert_int_equal(ax_session_drop_variant(looker, name, &error), AX_FAILED);
+    snapshot shown = look(s);
+    assert_variant(looker, name, &shown);
+    forget(&shown);
+    ax_session_close(looker);
+    ax_session_close(s);
 }
 
 // A document goes elsewhere without the files that its steps name, and is computed again from the beginning.
@@ -1200,6 +1335,9 @@ int main(void)
         cmocka_unit_test_teardown(one_of_many_gets_the_lock, clean),
         cmocka_unit_test_teardown(a_document_of_version_1_is_upgraded_by_its_first_change, clean),
         cmocka_unit_test_teardown(a_document_of_version_2_is_upgraded_by_its_first_change, clean),
+        cmocka_unit_test_teardown(a_document_of_version_3_is_upgraded_by_its_first_variant, clean),
+        cmocka_unit_test_teardown(variants_outlive_the_history_that_led_to_them, clean),
+        cmocka_unit_test_teardown(variants_have_names_and_are_not_too_many, clean),
         cmocka_unit_test_teardown(a_document_holds_what_its_files_held, clean),
         cmocka_unit_test_teardown(a_finished_design_is_there_until_it_is_edited, clean),
         cmocka_unit_test_teardown(a_copy_has_all_of_it, clean),

@@ -240,6 +240,26 @@ class Protocol(StudioCase):
         self.agree(page.ask("variant_drop", name="low"))
         self.disagree("bad_input", "no variant", page.ask("variant_take", name="low"))
 
+    def test_variants_are_in_the_document(self):
+        studio = self.start()
+        page = self.page(studio)
+        self.agree(page.ask("save", path="roof"))
+        self.agree(page.ask("variant", name="low"))
+        self.agree(page.ask("apply", operator={"op": "fill", "value": 1.5}))
+        self.agree(page.ask("variant", name="even"))
+        page.rest()
+        before = page.events["variants"]
+        studio.stop(signal.SIGKILL)
+        self.assertIn("Variant low: 4 steps", self.succeed("history", self.folder / "roof.auxshell"))
+        page = self.page(self.start(steps=None, document=self.folder / "roof.auxshell"))
+        page.rest()
+        self.assertEqual(page.events["variants"], before)
+        self.agree(page.ask("variant_look", name="low"))
+        self.assertGreater(max(page.others[-1].sections["prescribed"]), 1.6)
+        self.agree(page.ask("variant_take", name="low"))
+        page.rest()
+        self.assertEqual(len(page.events["document"]["steps"]), 4)
+
     def test_tabs_on_one_document_see_the_same(self):
         studio = self.start()
         one, two = self.page(studio), self.page(studio)

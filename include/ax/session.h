@@ -89,6 +89,28 @@ ax_status ax_session_undo(ax_session* session, const ax_progress* progress, ax_e
 ax_status ax_session_redo(ax_session* session, const ax_progress* progress, ax_error* error);
 ax_status ax_session_jump(ax_session* session, int moment, const ax_progress* progress, ax_error* error);
 
+// Variants: places of the document that have a name, to be compared; they stay where they are while the history goes on, and are no part
+// of it: neither keeping nor dropping one is a moment.
+enum { AX_VARIANTS_MOST = 24, AX_VARIANT_NAME = 80 }; // bytes of a name
+typedef struct ax_variant {
+    const char* name;
+    const char* figures; // what its keeper said about it
+    double time;         // seconds since 1970
+    int steps, at;       // of its recipe
+    bool present;        // the document stands there
+} ax_variant;
+// Those of the document in the order in which they were kept, borrowed until the next change.
+int ax_session_variants(const ax_session* session, const ax_variant** variants);
+// Keeps all steps and the state after step at - 1 under this name, instead of what had it. AX_USAGE when the name is empty or too long, or
+// there are too many.
+ax_status ax_session_keep_variant(ax_session* session, const char* name, const char* figures, ax_error* error);
+// Makes a variant's steps and its state those of the document: one moment. AX_BAD_INPUT: there is none of this name; so below.
+ax_status ax_session_take_variant(ax_session* session, const char* name, const ax_progress* progress, ax_error* error);
+ax_status ax_session_drop_variant(ax_session* session, const char* name, ax_error* error);
+// The form of a variant, owned by the caller. It may have to be computed again.
+ax_status ax_session_variant_form(ax_session* session, const char* name, const ax_progress* progress, ax_form** form,
+                                  ax_error* error);
+
 // Replaces the finished design of the present state by the same one simulated anew (ax_design_simulate). Copies it; no moment.
 ax_status ax_session_put_design(ax_session* session, const ax_design* design, ax_error* error);
 

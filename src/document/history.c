@@ -187,12 +187,12 @@ int ax_history_keep_file(sqlite3* db, int64_t step, const char* name, const char
                       "itb", step, name, bytes, size);
 }
 
-// What no moment leads to any more.
+// What no moment and no variant leads to any more.
 static int drop_unreachable(sqlite3* db)
 {
     static const char* const statements[] = {
-        ("DELETE FROM step WHERE id NOT IN (WITH RECURSIVE live(id) AS (SELECT tip FROM moment UNION"
-         " SELECT parent FROM step JOIN live USING(id)) SELECT id FROM live)"),
+        ("DELETE FROM step WHERE id NOT IN (WITH RECURSIVE live(id) AS (SELECT tip FROM moment UNION SELECT tip FROM"
+         " variant UNION SELECT parent FROM step JOIN live USING(id)) SELECT id FROM live)"),
         "DELETE FROM checkpoint WHERE step <> 0 AND step NOT IN (SELECT id FROM step)",
         "DELETE FROM file WHERE step NOT IN (SELECT id FROM step)",
         "DELETE FROM property WHERE design <> 0 AND design NOT IN (SELECT id FROM step)",
@@ -202,6 +202,59 @@ static int drop_unreachable(sqlite3* db)
     for (size_t k = 0; k < sizeof statements / sizeof *statements && result == SQLITE_OK; ++k)
         result = ax_sql_run(db, statements[k], "");
     return result;
+}
+
+int ax_history_variants(sqlite3* db, ax_kept_variant** variants, int* count)
+{
+    *variants = NULL;
+    *count = 0;
+    int result = SQLITE_OK, capacity = 0;
+    sqlite3_stmt* rows =
+        ax_sql_ask(db, "SELECT name, tip, state, steps, at, time, figures FROM variant ORDER BY rowid", "");
+    while (ax_sql_next(rows, &result)) {
+        if (*count == capacity) {
+            capacity = 2 * capacity + 8;
+            *variants = ax_realloc(*variants, (size_t)capacity, sizeof **variants);
+        }
+        ax_kept_variant* v = &(*variants)[(*count)++];
+        *v = (ax_kept_variant){.name = column_text(rows, 0),
+                               .tip = sqlite3_column_int64(rows, 1),
+                               .state = sqlite3_column_int64(rows, 2),
+                               .time = sqlite3_column_double(rows, 5),
+                               .figures = column_text(rows, 6)};
+        if (!v->name || !v->figures || !column_whole(rows, 3, &v->steps) || !column_whole(rows, 4, &v->at) ||
+            v->at > v->steps) {
+            result = SQLITE_CORRUPT;
+            break;
+        }
+    }
+    sqlite3_finalize(rows);
+    return result;
+}
+
+void ax_history_variants_free(ax_kept_variant* variants, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        ax_free(variants[k].name);
+        ax_free(variants[k].figures);
+    }
+    ax_free(variants);
+}
+
+int ax_history_keep_variant(sqlite3* db, const char* name, const ax_present* p, double time, const char* figures)
+{
+    // it keeps its place in the list, and what it was is gone
+    int result = ax_sql_run(db,
+                            "INSERT INTO variant VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT(name) DO UPDATE SET"
+                            " tip = ?2, state = ?3, steps = ?4, at = ?5, time = ?6, figures = ?7",
+                            "tiiiidt", name, p->tip, p->state, (int64_t)p->steps, (int64_t)p->at, time, figures);
+    return result == SQLITE_OK ? drop_unreachable(db) : result;
+}
+
+int ax_history_drop_variant(sqlite3* db, const char* name)
+{
+    int result = ax_sql_run(db, "DELETE FROM variant WHERE name = ?1", "t", name);
+    return result == SQLITE_OK ? drop_unreachable(db) : result;
 }
 
 int ax_history_go(sqlite3* db, int moment)
@@ -222,7 +275,8 @@ int ax_history_add_moment(sqlite3* db, const ax_present* p, const char* words, d
     return result == SQLITE_OK && dropped ? drop_unreachable(db) : result;
 }
 
-// A stored state, and how much it would be missed: the present one most (0), then those of moments near to it, then every tenth.
+// A stored state, and how much it would be missed: the present one most (0), then those of variants and of moments near to it, then
+// every tenth.
 // States between, which no moment has, come last among those that are kept.
 typedef struct stored {
     int64_t step, bytes;
@@ -249,10 +303,12 @@ static stored rank(sqlite3_stmt* row)
                  : sqlite3_column_int(row, 3) % stride == 0 ? 2
                                                             : 3;
     }
+    if (sqlite3_column_int(row, 4) && s.rank > 0)
+        s.rank = 1, s.distance = 0;
     return s;
 }
 
-// `list`: step, bytes, distance of the nearest moment from the present one, its number.
+// `list`: step, bytes, distance of the nearest moment from the present one, its number, and whether it is that of a variant.
 static int thin(sqlite3* db, const char* list, int now, int most, int (*drop)(sqlite3* db, sqlite3_int64 step))
 {
     int result = SQLITE_OK, count = 0, capacity = 0;
@@ -287,13 +343,13 @@ static int drop_checkpoint(sqlite3* db, sqlite3_int64 step)
 int ax_history_thin(sqlite3* db, int now)
 {
     int result = thin(db,
-                      "SELECT step, length(form), min(abs(number - ?1)), number FROM checkpoint"
-                      " LEFT JOIN moment ON state = step GROUP BY step",
+                      "SELECT step, length(form), min(abs(number - ?1)), number, step IN (SELECT state FROM variant)"
+                      " FROM checkpoint LEFT JOIN moment ON state = step GROUP BY step",
                       now, most_checkpoints, drop_checkpoint);
     // the design with which a document began cannot be computed again
     return result == SQLITE_OK ? thin(db,
-                                      "SELECT design, 0, min(abs(number - ?1)), number FROM"
-                                      " (SELECT DISTINCT design FROM property WHERE design <> 0)"
+                                      "SELECT design, 0, min(abs(number - ?1)), number, design IN (SELECT state FROM"
+                                      " variant) FROM (SELECT DISTINCT design FROM property WHERE design <> 0)"
                                       " LEFT JOIN moment ON state = design GROUP BY design",
                                       now, most_designs, ax_design_remove)
                                : result;

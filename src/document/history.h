@@ -16,6 +16,14 @@ typedef struct ax_present {
 
 // SQLITE_CORRUPT when there is no such moment or its numbers cannot be.
 int ax_history_moment(sqlite3* db, int number, ax_present* out);
+// A place in the tree that has a name.
+typedef struct ax_kept_variant {
+    char *name, *figures;
+    int64_t tip, state;
+    int steps, at;
+    double time;
+} ax_kept_variant;
+
 // The moment at which the session is, and the folder of its files, owned by the caller ("": that of the document).
 int ax_history_present(sqlite3* db, ax_present* out, char** folder);
 // All moments in order, owned by the caller with their words.
@@ -36,13 +44,21 @@ const void* ax_history_checkpoint(sqlite3* db, int64_t step, size_t* size, sqlit
 // What the file that a step names held when it was read last; owned by the caller. *bytes NULL: nothing is kept.
 int ax_history_file(sqlite3* db, int64_t step, char** bytes, size_t* size);
 
+// All variants in the order in which they were kept, owned by the caller with their texts.
+int ax_history_variants(sqlite3* db, ax_kept_variant** variants, int* count);
+void ax_history_variants_free(ax_kept_variant* variants, int count);
+
 // ---- within a transaction ---------------------------------------------------------------------------------------------------
 
 int ax_history_add_step(sqlite3* db, int64_t parent, const char* json, int64_t* step);
 // Makes `present` a moment and the present one, and drops those behind it with all that only they needed.
 int ax_history_add_moment(sqlite3* db, const ax_present* present, const char* words, double time);
 int ax_history_go(sqlite3* db, int moment);
+// The place `present` under this name, instead of what had it.
+int ax_history_keep_variant(sqlite3* db, const char* name, const ax_present* present, double time, const char* figures);
+// With all that only it needed.
+int ax_history_drop_variant(sqlite3* db, const char* name);
 int ax_history_keep_file(sqlite3* db, int64_t step, const char* name, const char* bytes, size_t size);
 int ax_history_keep(sqlite3* db, int64_t step, const void* form, size_t size);
-// Keeps checkpoints and designs of the present, of the last moments and of every tenth one before, within bounds.
+// Keeps checkpoints and designs of the present, of variants, of the last moments and of every tenth one before, within bounds.
 int ax_history_thin(sqlite3* db, int now);

@@ -17,7 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { SEALED = 6 };            // tables
+enum { SEALED = 7 };            // tables
 enum { most_file = 256 << 20 }; // bytes; larger ones are not kept
 enum { stride = 10 };           // while steps are played, the form is kept after every tenth
 
@@ -32,6 +32,9 @@ struct ax_session {
     ax_present present;
     ax_moment* moments;
     int moment_count;
+    ax_kept_variant* kept; // variants, and what is told of them
+    ax_variant* variants;
+    int variant_count;
     ax_form* form;          // after step present.state
     ax_form* const* making; // that of the attempt that is being played
     void* bytes;            // the same, stored
@@ -309,7 +312,7 @@ static double now(void)
 }
 
 // Tables that are sealed again after they were touched. Checkpoints are not sealed; see schema.h.
-static const char* const sealed[SEALED] = {"step", "moment", "session", "property", "array", "file"};
+static const char* const sealed[SEALED] = {"step", "moment", "session", "property", "array", "file", "variant"};
 
 static void on_touch(void* context, int operation, const char* database, const char* table, sqlite3_int64 row)
 {
@@ -414,6 +417,37 @@ static ax_status read_moments(ax_session* s, ax_error* error)
     return result == SQLITE_OK ? AX_OK : fail_reading(s, result, error);
 }
 
+static void forget_variants(ax_session* s)
+{
+    ax_history_variants_free(s->kept, s->variant_count);
+    ax_free(s->variants);
+    s->kept = NULL, s->variants = NULL, s->variant_count = 0;
+}
+
+static void find_present_variant(ax_session* s)
+{
+    for (int k = 0; k < s->variant_count; ++k)
+        s->variants[k].present = s->kept[k].tip == s->present.tip && s->kept[k].at == s->present.at;
+}
+
+static ax_status read_variants(ax_session* s, ax_error* error)
+{
+    forget_variants(s);
+    int result = ax_history_variants(s->database.view, &s->kept, &s->variant_count);
+    if (result != SQLITE_OK) {
+        forget_variants(s);
+        return fail_reading(s, result, error);
+    }
+    s->variants = AX_NEW(ax_variant, (size_t)s->variant_count);
+    for (int k = 0; k < s->variant_count; ++k) {
+        const ax_kept_variant* v = &s->kept[k];
+        s->variants[k] =
+            (ax_variant){.name = v->name, .figures = v->figures, .time = v->time, .steps = v->steps, .at = v->at};
+    }
+    find_present_variant(s);
+    return AX_OK;
+}
+
 // Writes what was tried as moment `number`, a new one if it has words, and makes it the present one.
 static ax_status commit(ax_session* s, attempt* a, int number, const char* words, const char* failure, ax_error* error)
 {
@@ -434,6 +468,7 @@ static ax_status commit(ax_session* s, attempt* a, int number, const char* words
     ax_status status = end(s, result, error);
     if (status == AX_OK) {
         adopt(s, a, &present);
+        find_present_variant(s);
         status = read_moments(s, error);
     }
     return status;
@@ -477,6 +512,7 @@ void ax_session_close(ax_session* s)
     if (s->designed >= 0)
         ax_design_free(&s->design);
     ax_history_moments_free(s->moments, s->moment_count);
+    forget_variants(s);
     ax_recipe_free(s->recipe);
     ax_free(s->ids);
     ax_free(s->present.failure);
@@ -502,6 +538,8 @@ static ax_status read_present(ax_session* s, const ax_progress* progress, ax_err
     s->from_design = ax_design_stored(s->database.view, 0);
     s->recipe = s->from_design ? ax_recipe_make_based() : ax_recipe_make();
     ax_status status = read_moments(s, error);
+    if (status == AX_OK)
+        status = read_variants(s, error);
     if (status == AX_OK)
         status = show_steps(s, s->present.tip, s->present.steps, error);
     if (status == AX_OK && s->ids[s->present.at] != s->present.state)
@@ -934,6 +972,23 @@ ax_status ax_session_go(ax_session* s, int at, const ax_progress* progress, ax_e
     return status;
 }
 
+// Goes to a place of the tree, as moment `target->now`: a new one if there are words for it.
+static ax_status visit(ax_session* s, const ax_present* target, const char* words, const ax_progress* progress,
+                       ax_error* error)
+{
+    attempt a = {0};
+    ax_status status = show_steps(s, target->tip, target->steps, error);
+    if (status == AX_OK)
+        status = play(s, target->at, progress, &a, error);
+    if (status == AX_OK)
+        status = commit(s, &a, target->now, words, target->failure, error);
+    if (status == AX_OK)
+        forget(&a);
+    else
+        revert(s, &a);
+    return status;
+}
+
 ax_status ax_session_jump(ax_session* s, int moment, const ax_progress* progress, ax_error* error)
 {
     ax_status status = check_writable(s, error);
@@ -942,17 +997,8 @@ ax_status ax_session_jump(ax_session* s, int moment, const ax_progress* progress
     if (moment < 0 || moment >= s->moment_count)
         return ax_fail(error, AX_USAGE, "There is no moment %d: the history has 0 to %d.", moment, s->moment_count - 1);
     ax_present target;
-    attempt a = {0};
     int result = ax_history_moment(s->database.view, moment, &target);
-    status = result == SQLITE_OK ? show_steps(s, target.tip, target.steps, error) : fail_reading(s, result, error);
-    if (status == AX_OK)
-        status = play(s, target.at, progress, &a, error);
-    if (status == AX_OK)
-        status = commit(s, &a, moment, NULL, target.failure, error);
-    if (status == AX_OK)
-        forget(&a);
-    else
-        revert(s, &a);
+    status = result == SQLITE_OK ? visit(s, &target, NULL, progress, error) : fail_reading(s, result, error);
     ax_free(target.failure);
     return status;
 }
@@ -970,6 +1016,101 @@ ax_status ax_session_redo(ax_session* s, const ax_progress* progress, ax_error* 
         return ax_fail(error, AX_USAGE, "There is nothing to redo.");
     return ax_session_jump(s, s->present.now + 1, progress, error);
 }
+
+// ---- variants ---------------------------------------------------------------------------------------------------------------
+
+int ax_session_variants(const ax_session* s, const ax_variant** variants)
+{
+    *variants = s->variants;
+    return s->variant_count;
+}
+
+static ax_status find_variant(const ax_session* s, const char* name, const ax_kept_variant** found, ax_error* error)
+{
+    for (int k = 0; k < s->variant_count; ++k)
+        if (strcmp(s->kept[k].name, name) == 0) {
+            *found = &s->kept[k];
+            return AX_OK;
+        }
+    return ax_fail(error, AX_BAD_INPUT, "There is no variant \"%.*s\".", AX_VARIANT_NAME, name);
+}
+
+ax_status ax_session_keep_variant(ax_session* s, const char* name, const char* figures, ax_error* error)
+{
+    const ax_kept_variant* old;
+    ax_status status = check_writable(s, error);
+    if (status != AX_OK)
+        return status;
+    if (!s->form)
+        return ax_fail(error, AX_USAGE, "%s is empty: there is nothing to keep.", s->path);
+    if (!*name || strlen(name) > AX_VARIANT_NAME)
+        return ax_fail(error, AX_USAGE, "The name of a variant has 1 to %d bytes.", AX_VARIANT_NAME);
+    if (s->variant_count >= AX_VARIANTS_MOST && find_variant(s, name, &old, NULL) != AX_OK)
+        return ax_fail(error, AX_USAGE, "A document has at most %d variants. Remove one first.", AX_VARIANTS_MOST);
+    int result = begin(s);
+    if (result == SQLITE_OK)
+        result = ax_history_keep_variant(s->database.file, name, &s->present, now(), figures);
+    if (result == SQLITE_OK)
+        result = seal(s);
+    status = end(s, result, error);
+    return status == AX_OK ? read_variants(s, error) : status;
+}
+
+ax_status ax_session_drop_variant(ax_session* s, const char* name, ax_error* error)
+{
+    const ax_kept_variant* v;
+    ax_status status = check_writable(s, error);
+    if (status == AX_OK)
+        status = find_variant(s, name, &v, error);
+    if (status != AX_OK)
+        return status;
+    int result = begin(s);
+    if (result == SQLITE_OK)
+        result = ax_history_drop_variant(s->database.file, name);
+    if (result == SQLITE_OK)
+        result = seal(s);
+    status = end(s, result, error);
+    return status == AX_OK ? read_variants(s, error) : status;
+}
+
+ax_status ax_session_take_variant(ax_session* s, const char* name, const ax_progress* progress, ax_error* error)
+{
+    const ax_kept_variant* v = NULL;
+    ax_status status = check_writable(s, error);
+    if (status == AX_OK)
+        status = find_variant(s, name, &v, error);
+    if (status != AX_OK)
+        return status;
+    const ax_present target = {
+        .now = s->present.now + 1, .tip = v->tip, .state = v->state, .steps = v->steps, .at = v->at};
+    char words[AX_VARIANT_NAME + 32];
+    snprintf(words, sizeof words, "Take variant %s", name);
+    return visit(s, &target, words, progress, error);
+}
+
+ax_status ax_session_variant_form(ax_session* s, const char* name, const ax_progress* progress, ax_form** form,
+                                  ax_error* error)
+{
+    const ax_kept_variant* v = NULL;
+    *form = NULL;
+    ax_status status = find_variant(s, name, &v, error);
+    if (status != AX_OK)
+        return status;
+    attempt a = {0};
+    if (!fetch_checkpoint(s, v->state, &a)) {
+        status = show_steps(s, v->tip, v->steps, error);
+        if (status == AX_OK)
+            status = play(s, v->at, progress, &a, error);
+    }
+    if (status == AX_OK) {
+        *form = a.form;
+        a.form = NULL;
+    }
+    revert(s, &a);
+    return status;
+}
+
+// -----------------------------------------------------------------------------------------------------------------------------
 
 ax_status ax_session_put_design(ax_session* s, const ax_design* design, ax_error* error)
 {

@@ -642,7 +642,6 @@ static void end_desk(desk* d)
     ax_form_free(d->live);
     d->live = NULL;
     job_close(d, d->discard);
-    desk_free_variants(d);
 }
 
 // One piece of work; false when the desk is to close. Commands come first, then the hand, then what moves by itself.

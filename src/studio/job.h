@@ -24,16 +24,6 @@ typedef struct grab {
     double to[3];
 } grab;
 
-// A named copy of the document.
-typedef struct variant {
-    char *name, *recipe;
-    void* form; // as ax_form_save gives it
-    size_t size;
-    int triangles, steps;
-    bool exact;
-    json_t* checks;
-} variant;
-
 struct desk {
     hub* hub;
     pthread_t thread;
@@ -77,8 +67,6 @@ struct desk {
     int last_count;
     ax_form_report report;
     double published, measured, reported, report_time, update_time, settle_time, move_start, hand_moved;
-    variant* variants;
-    int variant_count;
     const char* job_name;
     int job_id;
     double job_start, progressed;
@@ -105,7 +93,6 @@ void desk_step(desk* d, int iterations);
 void desk_restart(desk* d, double height);
 void desk_rename(desk* d, const char* id);
 void desk_begin_edit(desk* d); // before every change of the document
-void desk_free_variants(desk* d);
 json_t* job_variants(const desk* d);
 
 // The commands of one file, ended by a row without a name.

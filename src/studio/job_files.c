@@ -471,8 +471,10 @@ ax_status job_open(desk* d, ax_error* error)
 void job_close(desk* d, bool discard)
 {
     const ax_moment* moments;
+    const ax_variant* variants;
     int now;
-    bool unedited = d->session && d->beginning && ax_session_history(d->session, &moments, &now) == d->beginning;
+    bool unedited = d->session && d->beginning && ax_session_history(d->session, &moments, &now) == d->beginning &&
+                    ax_session_variants(d->session, &variants) == 0;
     ax_session_close(d->session);
     d->session = NULL;
     d->exact = NULL;

@@ -4,54 +4,47 @@
 
 #include <string.h>
 
-enum { VARIANTS_MOST = 24, NAME_MOST = 80 };
-
-static void free_variant(variant* v)
+static ax_status named(const job* j, const char** name, ax_error* error)
 {
-    ax_free(v->name);
-    ax_free(v->recipe);
-    ax_free(v->form);
-    json_decref(v->checks);
-    *v = (variant){0};
+    return message_unpack(&j->message, error, "{s:s}", "name", name);
 }
 
-void desk_free_variants(desk* d)
+// Of the document as another program may have written it: only what fits the protocol goes to pages.
+static json_t* figures_of(const ax_variant* v)
 {
-    for (int k = 0; k < d->variant_count; ++k)
-        free_variant(&d->variants[k]);
-    ax_free(d->variants);
-    d->variants = NULL;
-    d->variant_count = 0;
-}
-
-static int find(const desk* d, const char* name)
-{
-    for (int k = 0; k < d->variant_count; ++k)
-        if (strcmp(d->variants[k].name, name) == 0)
-            return k;
-    return -1;
-}
-
-static ax_status named(const desk* d, const job* j, int* k, ax_error* error)
-{
-    const char* name;
-    ax_status status = message_unpack(&j->message, error, "{s:s}", "name", &name);
-    if (status == AX_OK && (*k = find(d, name)) < 0)
-        status = ax_fail(error, AX_BAD_INPUT, "There is no variant \"%.80s\".", name);
-    return status;
+    static const char* const whole[] = {"triangle", "hinge"};
+    static const char* const text[] = {"key", "title", "answer", "limit", "severity"};
+    json_t *figures = json_loads(v->figures, 0, NULL), *checks = NULL, *check;
+    int triangles, exact;
+    size_t k;
+    bool sound =
+        json_unpack(figures, "{s:i, s:b, s:o}", "triangles", &triangles, "exact", &exact, "checks", &checks) == 0 &&
+        json_is_array(checks);
+    json_array_foreach(checks, k, check)
+    {
+        for (size_t f = 0; f < sizeof whole / sizeof *whole; ++f)
+            sound = sound && json_is_integer(json_object_get(check, whole[f]));
+        for (size_t f = 0; f < sizeof text / sizeof *text; ++f)
+            sound = sound && json_is_string(json_object_get(check, text[f]));
+    }
+    if (sound)
+        return figures;
+    json_decref(figures);
+    return json_pack("{s:i, s:b, s:[]}", "triangles", 0, "exact", false, "checks");
 }
 
 json_t* job_variants(const desk* d)
 {
-    char* present = ax_recipe_text(ax_session_recipe(d->session));
+    const ax_variant* variants;
+    int count = ax_session_variants(d->session, &variants);
     json_t* list = json_array();
-    for (int k = 0; k < d->variant_count; ++k) {
-        const variant* v = &d->variants[k];
-        json_array_append_new(list, json_pack("{s:s, s:i, s:i, s:b, s:O, s:b}", "name", v->name, "triangles",
-                                              v->triangles, "steps", v->steps, "exact", v->exact, "checks", v->checks,
-                                              "current", strcmp(present, v->recipe) == 0));
+    for (int k = 0; k < count; ++k) {
+        json_t* variant = figures_of(&variants[k]);
+        json_object_update_new(variant,
+                               json_pack("{s:s, s:i, s:o, s:b}", "name", variants[k].name, "steps", variants[k].at,
+                                         "time", describe_number(variants[k].time), "current", variants[k].present));
+        json_array_append_new(list, variant);
     }
-    ax_free(present);
     return json_pack("{s:s, s:o}", "event", "variants", "variants", list);
 }
 
@@ -59,62 +52,46 @@ static ax_status keep(desk* d, const job* j, json_t** result, ax_error* error)
 {
     (void)result;
     const char* name;
-    ax_status status = message_unpack(&j->message, error, "{s:s}", "name", &name);
+    ax_status status = named(j, &name, error);
     if (status != AX_OK)
         return status;
-    int k = find(d, name);
-    if (!*name || strlen(name) > NAME_MOST || (k < 0 && d->variant_count == VARIANTS_MOST))
-        return ax_fail(error, AX_USAGE, "variant: a name has 1 to %d bytes, and there are at most %d variants.",
-                       NAME_MOST, VARIANTS_MOST);
-    if (k >= 0)
-        free_variant(&d->variants[k]);
-    else {
-        k = d->variant_count++;
-        d->variants = ax_realloc(d->variants, (size_t)d->variant_count, sizeof *d->variants);
-    }
     ax_form* form = ax_session_form(d->session);
     ax_form_view view = ax_form_look(form);
     ax_form_report report;
     ax_form_measure(form, &report);
     shape_measures measures = shape_measure(&view);
-    variant* v = &d->variants[k];
-    *v = (variant){.name = ax_copy(name, strlen(name) + 1, 1),
-                   .recipe = ax_recipe_text(ax_session_recipe(d->session)),
-                   .triangles = view.linkage->triangle_count,
-                   .steps = ax_session_at(d->session),
-                   .exact = d->exact != NULL,
-                   .checks = describe_checks(&report, &view, measures.curvature, d->exact)};
-    v->form = ax_form_save(form, &v->size);
+    json_t* figures = json_pack("{s:i, s:b, s:o}", "triangles", view.linkage->triangle_count, "exact", d->exact != NULL,
+                                "checks", describe_checks(&report, &view, measures.curvature, d->exact));
+    char* text = json_dumps(figures, JSON_COMPACT);
+    status = ax_session_keep_variant(d->session, name, text, error);
+    free(text);
+    json_decref(figures);
     shape_measures_free(&measures);
     ax_form_report_free(&report);
-    return AX_OK;
+    return status;
 }
 
 static ax_status take(desk* d, const job* j, json_t** result, ax_error* error)
 {
     (void)result;
-    int k;
-    ax_status status = named(d, j, &k, error);
+    const char* name;
+    ax_status status = named(j, &name, error);
     if (status != AX_OK)
         return status;
     desk_begin_edit(d);
     const ax_progress progress = desk_progress(d);
-    ax_recipe* recipe;
-    status = ax_recipe_parse(d->variants[k].recipe, &recipe, error);
-    if (status == AX_OK)
-        status = ax_session_replace(d->session, recipe, &progress, error);
-    ax_recipe_free(recipe);
-    return status;
+    return ax_session_take_variant(d->session, name, &progress, error);
 }
 
 static ax_status look(desk* d, const job* j, json_t** result, ax_error* error)
 {
     (void)result;
-    int k;
+    const char* name;
     ax_form* form = NULL;
-    ax_status status = named(d, j, &k, error);
+    const ax_progress progress = desk_progress(d);
+    ax_status status = named(j, &name, error);
     if (status == AX_OK)
-        status = ax_form_load(d->variants[k].form, d->variants[k].size, &form, error);
+        status = ax_session_variant_form(d->session, name, &progress, &form, error);
     if (status != AX_OK)
         return status;
     board b = {0};
@@ -124,8 +101,7 @@ static ax_status look(desk* d, const job* j, json_t** result, ax_error* error)
     shape_put_places(&b, &view, &frame);
     shape_put_rest(&b, &view, &measures);
     shape_put_exact(&b, &view, form, NULL);
-    hub_tell(d->hub, d, j->client,
-             describe_linkage(d->id, b.topology, &view, frame.origin, frame.flat_origin, d->variants[k].name));
+    hub_tell(d->hub, d, j->client, describe_linkage(d->id, b.topology, &view, frame.origin, frame.flat_origin, name));
     size_t size;
     unsigned char* block = board_frame(&b, (frame_header){.kind = FRAME_VARIANT, .re = (unsigned)j->message.id}, 0,
                                        hub_before(d->hub), &size);
@@ -139,14 +115,9 @@ static ax_status look(desk* d, const job* j, json_t** result, ax_error* error)
 static ax_status drop(desk* d, const job* j, json_t** result, ax_error* error)
 {
     (void)result;
-    int k;
-    ax_status status = named(d, j, &k, error);
-    if (status != AX_OK)
-        return status;
-    free_variant(&d->variants[k]);
-    --d->variant_count;
-    memmove(d->variants + k, d->variants + k + 1, (size_t)(d->variant_count - k) * sizeof *d->variants);
-    return AX_OK;
+    const char* name;
+    ax_status status = named(j, &name, error);
+    return status == AX_OK ? ax_session_drop_variant(d->session, name, error) : status;
 }
 
 const job_type job_types_variants[] = {

@@ -215,7 +215,7 @@ export interface ProblemEvent {
 
 export interface VariantsEvent {
     event: "variants";
-    variants: { name: string; triangles: number; steps: number; exact: boolean; checks: Check[]; current: boolean }[];
+    variants: { name: string; triangles: number; steps: number; exact: boolean; time: number; checks: Check[]; current: boolean }[];
 }
 
 export type ServerEvent =

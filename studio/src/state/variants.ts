@@ -4,7 +4,7 @@ import { kinds } from "../protocol/frames";
 import type { LinkageEvent } from "../protocol/types";
 import { Shell } from "../panels/shell";
 import { pictureUrl, thumbnail } from "../scene/thumbnail";
-import { ask, onOtherFrame, variants } from "./session";
+import { ask, documentState, onOtherFrame, variants } from "./session";
 
 export interface VariantLook {
     shell: Shell;
@@ -28,7 +28,7 @@ onOtherFrame((frame, linkage: LinkageEvent | null) => {
 
 effect(() => {
     for (const v of variants.value) {
-        const stamp = JSON.stringify([v.triangles, v.steps, v.exact, v.checks]);
+        const stamp = JSON.stringify([documentState.value?.id, v.time, v.checks]);
         if (asked.get(v.name) === stamp) continue;
         asked.set(v.name, stamp);
         void ask("variant_look", { name: v.name }).catch(() => asked.delete(v.name));
