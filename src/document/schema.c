@@ -39,8 +39,8 @@ static const char* const steps[] = {
     // What the files that steps name held when they were read, so that a document is whole wherever it goes.
     "CREATE TABLE file(step INTEGER PRIMARY KEY, name TEXT NOT NULL, data BLOB NOT NULL);",
     // Places in the tree of steps that have a name, as a moment has a number, with their figures as text.
-    "CREATE TABLE variant(name TEXT PRIMARY KEY NOT NULL, tip INTEGER NOT NULL, state INTEGER NOT NULL, steps INTEGER"
-    " NOT NULL, at INTEGER NOT NULL, time REAL NOT NULL, figures TEXT NOT NULL);",
+    ("CREATE TABLE variant(name TEXT PRIMARY KEY NOT NULL, tip INTEGER NOT NULL, state INTEGER NOT NULL, steps INTEGER"
+     " NOT NULL, at INTEGER NOT NULL, time REAL NOT NULL, figures TEXT NOT NULL);"),
 };
 
 const ax_schema ax_document_schema = {.version = sizeof steps / sizeof *steps, .steps = steps};
