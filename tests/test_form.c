@@ -4,6 +4,7 @@
 #include "ax/form.h"
 
 #include "base/vec.h"
+#include "support/sample.h"
 
 #include <math.h>
 #include <string.h>
@@ -206,6 +207,9 @@ static void stored_forms_go_on_with_the_same_bits(void** state)
     paint(form, sphere);
     slide_on_circle(form, 1.3);
     set_dynamics(form, AX_DYNAMICS_INFLATION, 3);
+    ax_form_dynamics adopting = *ax_form_get_dynamics(form);
+    adopting.adopt = true;
+    ax_form_set_dynamics(form, &adopting);
     int some[3] = {3, 14, 15};
     ax_form_name_selection(form, "some", 3, some);
     ax_form_constraint plane = {.name = "arch", .kind = AX_HELD_PLANE, .count = 20, .weight = 1};
@@ -230,6 +234,7 @@ static void stored_forms_go_on_with_the_same_bits(void** state)
     assert_memory_equal(ax_form_look(form).flat, ax_form_look(other).flat, n * 2 * sizeof(double));
     int count;
     assert_memory_equal(ax_form_selection(other, "some", &count), some, sizeof some);
+    assert_true(ax_form_get_dynamics(other)->adopt);
 
     // damage is noticed wherever it is
     for (size_t k = 0; k < size; k += size / 37) {
@@ -359,6 +364,45 @@ static void shapes_do_not_depend_on_resolution(void** state)
     assert_near(coarse[1], fine[1], 0.02 * 2.6);
 }
 
+// Border panels change size and shape to reach the rim: that is not off what was painted. What gives way further in is.
+static void scale_factors_are_judged_away_from_the_rim(void** state)
+{
+    (void)state;
+    ax_form* form = disk(600, 1.4);
+    slide_on_circle(form, 1.3);
+    set_dynamics(form, AX_DYNAMICS_INFLATION, 3);
+    settle(form);
+    ax_form_report r = measured(form);
+    ax_form_view view = ax_form_look(form);
+    double border = 0;
+    int beside = 0;
+    for (int t = 0; t < view.linkage->triangle_count; ++t) {
+        bool rim = false;
+        for (int k = 0; k < 3; ++k)
+            rim |= view.linkage->on_rim[view.linkage->triangles[t][k]];
+        border = rim ? fmax(border, fabs(view.realised[t] - 1.4)) : border;
+        beside += rim;
+    }
+    assert_true(border > 0.1);
+    assert_at_most(r.scale_off_max, 0.1);
+    assert_true(r.scale_judged > 300 && r.scale_judged < view.linkage->triangle_count - beside);
+    for (int k = 0; k < r.finding_count; ++k)
+        assert_string_not_equal(r.findings[k].kind, "scale");
+    ax_form_report_free(&r);
+    ax_form_free(form);
+
+    // a design from a surface asks for the sizes that it has, however uneven its sheet
+    ax_design design = sample_design();
+    ax_error error;
+    assert_int_equal(ax_form_from_design(&design, &form, &error), AX_OK);
+    r = measured(form);
+    assert_true(r.scale_judged > 0);
+    assert_at_most(r.scale_off_max, 1e-12);
+    ax_form_report_free(&r);
+    ax_form_free(form);
+    ax_design_free(&design);
+}
+
 static void painted_curvature_is_summed_before_any_solve(void** state)
 {
     (void)state;
@@ -442,6 +486,7 @@ int main(void)
         cmocka_unit_test(a_cancelled_settle_changes_nothing),
         cmocka_unit_test(constraints_hold),
         cmocka_unit_test(shapes_do_not_depend_on_resolution),
+        cmocka_unit_test(scale_factors_are_judged_away_from_the_rim),
         cmocka_unit_test(painted_curvature_is_summed_before_any_solve),
         cmocka_unit_test(too_little_material_is_told),
         cmocka_unit_test(unusable_requests_are_refused),

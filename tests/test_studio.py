@@ -96,6 +96,13 @@ class Protocol(StudioCase):
         self.assertGreater(page.frames, frames)
         self.assertNotIn("triangles", page.last.sections)  # the linkage is the same
 
+    def test_the_example_that_it_opens_on_deploys_without_reserve(self):
+        page = self.page(self.start(), joined=False)
+        self.agree(page.ask("new", name="welcome", example="welcome"))
+        page.rest()
+        report = page.events["report"]
+        self.assertEqual(report["verdict"]["word"], "Yes", report["checks"])
+
     def test_the_protocol_page_names_every_command_and_section(self):
         page = (ROOT / "docs/protocol.md").read_text()
         tables = [path.read_text() for path in (ROOT / "src/studio").glob("job_*.c")]

@@ -215,9 +215,11 @@ typedef struct ax_form_report {
     double flat_error, deployed_error, simulated_error; // largest |edge / its length - 1|; NaN without the state
     double mouth_min;                                   // radians
     int mouth_hinge;
-    int flipped, overlap_pairs;                                      // in the flat state; overlaps deeper than 1e-6 L
-    double realised_min, realised_max, scale_off_rms, scale_off_max; // |realised - prescribed|
-    int scale_off_triangle;
+    int flipped, overlap_pairs; // in the flat state; overlaps deeper than 1e-6 L
+    int scale_judged;           // panels whose scale factor can be told: no border panels, nor those beside them
+    double realised_min, realised_max, scale_off_rms,
+        scale_off_max;      // |realised - prescribed| of these; without any 0, and
+    int scale_off_triangle; // -1, and the least and greatest of all panels
     double opening_min, opening_mean;
     double overhang;      // share of panels that look down: no height field
     double curvature_max; // painted curvature summed over the worst disc, radians; above 2 pi the surface turns over

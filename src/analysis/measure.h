@@ -32,6 +32,10 @@ int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2]);
 // flat state; for border triangles, which lack a neighbour, the one that their mouths show.
 void ax_measure_scale(const ax_linkage* linkage, const double (*flat)[2], double* scale);
 
+// Mean curvature per panel of a state in space, 1/length, positive to the side to which it bulges as a whole: a quadric fitted to the hinges
+// of the panels within two steps (21; at the rim, on one side only, fewer). NaN where fewer than 12 are there or they lie on a conic.
+void ax_measure_mean_curvature(const ax_linkage* linkage, const double (*places)[3], double* out);
+
 // 5 %, 50 % and 95 % quantiles of the interior angles of six-hinged holes in space, degrees.
 void ax_measure_hole_angles(const ax_linkage* linkage, const double (*places)[3], double quantile[3]);
 

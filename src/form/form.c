@@ -190,6 +190,7 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
     const ax_linkage* linkage = &f->lattice.linkage;
     size_t n = (size_t)linkage->hinge_count, t = (size_t)linkage->triangle_count;
     f->prescribed = AX_NEW(double, t);
+    f->stretch = AX_NEW(double, t);
     f->centres = ax_alloc(t, sizeof *f->centres);
     f->flat = ax_alloc(n, sizeof *f->flat);
     f->deployed = ax_alloc(n, sizeof *f->deployed);
@@ -202,7 +203,7 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
     f->lanes = AX_NEW(double, 3 * t + 6 * (size_t)linkage->hole_count);
     for (size_t k = 0; k < t; ++k) {
         const int* h = linkage->triangles[k];
-        f->prescribed[k] = 1;
+        f->prescribed[k] = f->stretch[k] = 1;
         for (int c = 0; c < 2; ++c) {
             f->centres[k][c] =
                 (f->lattice.hinges[h[0]][c] + f->lattice.hinges[h[1]][c] + f->lattice.hinges[h[2]][c]) / 3;
@@ -250,7 +251,7 @@ void ax_form_free(ax_form* f)
     void* blocks[] = {f->centres,    f->mouths,    f->lines,    f->bends,          f->holder,     f->holes,
                       f->prescribed, f->rim,       f->held,     f->sets,           f->underlays,  f->flat,
                       f->deployed,   f->simulated, f->side,     f->underlay_names, f->clearances, f->pending,
-                      f->realised,   f->opening,   f->material, f->scratch,        f->lanes};
+                      f->realised,   f->opening,   f->material, f->scratch,        f->lanes,      f->stretch};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_free(f);
@@ -398,6 +399,7 @@ ax_status ax_form_from_design(const ax_design* design, ax_form** out, ax_error* 
             mean += f->side[t][k] / 3;
         }
         f->prescribed[t] = ax_clamp(2 * mean / f->lattice.spacing, 1, 2);
+        f->stretch[t] = design->scale[t] / f->prescribed[t];
     }
     // the rim stays where it is
     int* rim = AX_NEW(int, n);

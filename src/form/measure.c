@@ -348,6 +348,43 @@ static void measure_held(ax_form* f, ax_form_report* r)
     }
 }
 
+// A scale factor is what lies between a panel and its three neighbours. Border panels lack one, and shape and size of theirs are what
+// reaches the rim: what they show of it says nothing of what was painted, on them or on those beside them.
+static bool away_from_rim(const ax_form* f, int t)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    for (int k = 0; k < 3; ++k) {
+        int h = linkage->triangles[t][k], other = f->holder[h][f->holder[h][0] == t];
+        if (other < 0)
+            return false;
+        for (int i = 0; i < 3; ++i)
+            if (linkage->on_rim[linkage->triangles[other][i]])
+                return false;
+    }
+    return true;
+}
+
+static void measure_scale(const ax_form* f, ax_form_report* r)
+{
+    int count = f->lattice.linkage.triangle_count;
+    for (int t = 0; t < count; ++t)
+        r->scale_judged += away_from_rim(f, t);
+    r->realised_min = INFINITY, r->realised_max = -INFINITY;
+    for (int t = 0; t < count; ++t) {
+        if (r->scale_judged && !away_from_rim(f, t))
+            continue;
+        r->realised_min = fmin(r->realised_min, f->realised[t]);
+        r->realised_max = fmax(r->realised_max, f->realised[t]);
+        if (!r->scale_judged)
+            continue;
+        double off = fabs(f->realised[t] - f->prescribed[t] * f->stretch[t]);
+        r->scale_off_rms += off * off / r->scale_judged;
+        if (r->scale_off_triangle < 0 || off > r->scale_off_max)
+            r->scale_off_max = off, r->scale_off_triangle = t;
+    }
+    r->scale_off_rms = sqrt(r->scale_off_rms);
+}
+
 // ---- findings -------------------------------------------------------------------------------------------------------------------
 
 static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kind, double value, double limit,
@@ -494,7 +531,8 @@ static void find_problems(ax_form* f, ax_form_report* r)
         ax_panel_name(linkage, r->scale_off_triangle, name);
         tell(r, AX_SEVERITY_WARNING, "scale", r->scale_off_max, scale_gap,
              "Scale factors come out up to %.2f off what was asked, most at panel %s (asked %.2f, realised %.2f).",
-             r->scale_off_max, name, f->prescribed[r->scale_off_triangle], f->realised[r->scale_off_triangle])
+             r->scale_off_max, name, f->prescribed[r->scale_off_triangle] * f->stretch[r->scale_off_triangle],
+             f->realised[r->scale_off_triangle])
             ->triangle = r->scale_off_triangle;
     }
     if (moved && linkage->hole_count && r->opening_min < slack_opening) {
@@ -564,16 +602,7 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
     r->mouth_hinge = mouths.min_hinge;
     r->flipped = ax_measure_flipped(linkage, flat);
     r->overlap_pairs = ax_measure_overlaps(linkage, flat, overlap_depth * r->edge, 0, NULL);
-    r->realised_min = INFINITY, r->realised_max = -INFINITY;
-    for (int t = 0; t < linkage->triangle_count; ++t) {
-        double off = fabs(f->realised[t] - f->prescribed[t]);
-        r->realised_min = fmin(r->realised_min, f->realised[t]),
-        r->realised_max = fmax(r->realised_max, f->realised[t]);
-        r->scale_off_rms += off * off / linkage->triangle_count;
-        if (off > r->scale_off_max)
-            r->scale_off_max = off, r->scale_off_triangle = t;
-    }
-    r->scale_off_rms = sqrt(r->scale_off_rms);
+    measure_scale(f, r);
     r->opening_min = 1, r->opening_mean = 0;
     for (int k = 0; k < linkage->hole_count; ++k) {
         r->opening_min = fmin(r->opening_min, f->opening[k]);

@@ -42,6 +42,8 @@ struct ax_form {
 
     // asked
     double* prescribed;
+    double*
+        stretch; // per panel: what its flat surroundings show of a factor 1; other than 1 in sheets of designs, which are uneven
     double mouth_min; // radians
     bool released;
     ax_form_dynamics dynamics;

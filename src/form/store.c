@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-static const char magic[8] = "axform04";
+static const char magic[8] = "axform05";
 enum { MOST = 100000000 }; // entries of any one array
 
 typedef struct stream {
@@ -218,6 +218,7 @@ static void dynamics(stream* s, ax_form_dynamics* d)
     REAL(s, d->load.density);
     flag(s, &d->adapt);
     REAL(s, d->give);
+    flag(s, &d->adopt);
     flag(s, &d->collisions);
 }
 
@@ -225,6 +226,7 @@ static void body(stream* s, ax_form* f)
 {
     size_t n = (size_t)f->lattice.linkage.hinge_count, t = (size_t)f->lattice.linkage.triangle_count;
     state(s, f->prescribed, t * sizeof *f->prescribed);
+    state(s, f->stretch, t * sizeof *f->stretch);
     REAL(s, f->mouth_min);
     flag(s, &f->released);
     dynamics(s, &f->dynamics);

@@ -233,9 +233,10 @@ static check scale_check(const ax_form_report* r)
 {
     check c = {"scale", "Scale factors", .value = r->realised_max, .triangle = r->scale_off_triangle, .hinge = -1};
     snprintf(c.answer, sizeof c.answer, "%.2f to %.2f", r->realised_min, r->realised_max);
-    snprintf(c.limit, sizeof c.limit, "1 to 2, asked within %.2f", r->scale_off_max);
+    snprintf(c.limit, sizeof c.limit, "1 to 2, asked within %.2f on %d panels off the rim", r->scale_off_max,
+             r->scale_judged);
     c.severity = found(r, "scale", "scale", &c);
-    if (r->realised_max > 2 + 1e-6 || r->realised_min < 1 - 1e-3)
+    if (r->scale_judged && (r->realised_max > 2 + 1e-6 || r->realised_min < 1 - 1e-3))
         c.severity = FAILURE;
     return c;
 }
@@ -281,7 +282,7 @@ static check curvature_check(const ax_form_report* r, const ax_form_view* v, con
         snprintf(c.answer, sizeof c.answer, "not known");
     else
         snprintf(c.answer, sizeof c.answer, inward ? "dips inwards on %.1f %%" : "yes", 100 * c.value);
-    snprintf(c.limit, sizeof c.limit, "mean curvature above 0");
+    snprintf(c.limit, sizeof c.limit, "mean curvature above 0 on %d of %d panels", known, v->linkage->triangle_count);
     verdict other = found(r, "overhang", "curvature", &c);
     c.severity = !known ? UNKNOWN : c.value > 0.02 ? WARNING : inward ? NOTE : PASS;
     if (other > c.severity)

@@ -20,95 +20,12 @@ static double* edge_residuals(const ax_form_view* v, const double (*places)[3])
     return residual;
 }
 
-static void loop_centre(const double (*places)[3], int count, const int* loop, double centre[3])
-{
-    memset(centre, 0, 3 * sizeof *centre);
-    for (int k = 0; k < count; ++k)
-        for (int c = 0; c < 3; ++c)
-            centre[c] += places[loop[k]][c] / count;
-}
-
-// Twice the vector area of a loop of hinges about its centre.
-static void loop_normal(const double (*places)[3], int count, const int* loop, const double centre[3], double normal[3])
-{
-    memset(normal, 0, 3 * sizeof *normal);
-    for (int k = 0; k < count; ++k) {
-        double a[3], b[3], cross[3];
-        ax_sub3(places[loop[k]], centre, a);
-        ax_sub3(places[loop[(k + 1) % count]], centre, b);
-        ax_cross(a, b, cross);
-        for (int c = 0; c < 3; ++c)
-            normal[c] += cross[c];
-    }
-}
-
-// The two holes at each hinge, -1 on the rim.
-static int (*holes_at_hinges(const ax_linkage* l))[2]
-{
-    int(*at)[2] = ax_alloc((size_t)l->hinge_count, sizeof *at);
-    for (int h = 0; h < l->hinge_count; ++h)
-        at[h][0] = at[h][1] = -1;
-    for (int k = 0; k < l->hole_count; ++k)
-        for (int i = l->hole_start[k]; i < l->hole_start[k + 1]; ++i) {
-            int h = l->hole_hinges[i];
-            at[h][at[h][0] >= 0] = k;
-        }
-    return at;
-}
-
-// Mean curvature of the deployed state per triangle. Hole centres are the vertices of the base mesh; with even spokes the Laplacian
-// of position is 4 (mean of the neighbours - centre) / their squared distance = -2 H n. NaN where every hole is at the rim.
-static double* mean_curvature(const ax_form_view* v)
-{
-    const ax_linkage* l = v->linkage;
-    int(*at)[2] = holes_at_hinges(l);
-    double(*centre)[3] = ax_alloc((size_t)l->hole_count + 1, sizeof *centre), total = 0;
-    double *sum = AX_NEW0(double, l->hinge_count), *result = AX_NEW(double, l->triangle_count);
-    int* holes = AX_NEW0(int, l->hinge_count);
-    for (int k = 0; k < l->hole_count; ++k)
-        loop_centre(v->deployed, l->hole_start[k + 1] - l->hole_start[k], l->hole_hinges + l->hole_start[k], centre[k]);
-    for (int k = 0; k < l->hole_count; ++k) {
-        int count = l->hole_start[k + 1] - l->hole_start[k];
-        const int* loop = l->hole_hinges + l->hole_start[k];
-        double mean[3] = {0}, square = 0, normal[3];
-        bool inside = true;
-        for (int i = 0; i < count && inside; ++i) {
-            int other = at[loop[i]][at[loop[i]][0] == k];
-            if ((inside = other >= 0)) {
-                double spoke[3];
-                ax_sub3(centre[other], centre[k], spoke);
-                square += ax_dot3(spoke, spoke) / count;
-                for (int c = 0; c < 3; ++c)
-                    mean[c] += spoke[c] / count;
-            }
-        }
-        loop_normal(v->deployed, count, loop, centre[k], normal);
-        double length = ax_norm3(normal);
-        if (!inside || !(length > 0) || !(square > 0))
-            continue;
-        double curvature = -2 / square * ax_dot3(mean, normal) / length;
-        total += curvature * length;
-        for (int i = 0; i < count; ++i)
-            sum[loop[i]] += curvature, ++holes[loop[i]];
-    }
-    double side = total < 0 ? -1 : 1; // the side to which it bulges as a whole
-    for (int t = 0; t < l->triangle_count; ++t) {
-        const int* corner = l->triangles[t];
-        int count = holes[corner[0]] + holes[corner[1]] + holes[corner[2]];
-        result[t] = count ? side * (sum[corner[0]] + sum[corner[1]] + sum[corner[2]]) / count : NAN;
-    }
-    ax_free(at);
-    ax_free(centre);
-    ax_free(sum);
-    ax_free(holes);
-    return result;
-}
-
 shape_measures shape_measure(const ax_form_view* v)
 {
     shape_measures m = {.mouth = ax_measure_mouth_angles(v->linkage, v->flat),
                         .residual = edge_residuals(v, v->simulated ? v->simulated : v->deployed),
-                        .curvature = mean_curvature(v)};
+                        .curvature = AX_NEW(double, v->linkage->triangle_count)};
+    ax_measure_mean_curvature(v->linkage, v->deployed, m.curvature);
     for (int h = 0; h < v->linkage->hinge_count; ++h)
         if (!isfinite(m.mouth[h]))
             m.mouth[h] = NAN;
