@@ -1,6 +1,7 @@
 // Recursive bisection: each part is cut along the direction, of a few, whose sweep between 40 and 60 % of its nodes meets the
 // smallest separator: nodes before the cut with a neighbour behind it, eliminated after both sides. Sweeps count in bins much
-// finer than a row of the mesh, so nothing is sorted. Parts of at most LEAF nodes are ordered by exact minimum degree.
+// finer than a row of the mesh, so nothing is sorted. Where rows are not straight a bent cut is shorter: the least separator in the
+// middle third is found as a flow. Parts of at most LEAF nodes are ordered by exact minimum degree.
 #include "linalg/order.h"
 
 #include "base/vec.h"
@@ -24,6 +25,7 @@ typedef struct part {
 typedef struct cut {
     double direction[3], low, scale; // bin of a node: (direction . place - low) * scale
     int bin, size;                   // nodes up to this bin lie before the cut; of the separator
+    int wide[2], near[2];            // bins of the middle third of the nodes, and of some of them about the cut
 } cut;
 
 typedef struct dissection {
@@ -32,7 +34,8 @@ typedef struct dissection {
     double* reach;     // per node: distance to its farthest neighbour
     int* node;         // the order in the making
     int* part_of;      // per node: `from` of its part, -1 in a separator
-    int* scratch;      // per node; leaves keep local numbers here
+    int* side;         // per node of a part that is being cut: its side, or its number in a band
+    int* scratch;      // per place in the order
     atomic_bool dense; // some part cannot be cut, or places are not numbers
     const part* parts; // of the loop that runs: its parts, their directions and halves
     cut* cuts;
@@ -86,10 +89,12 @@ static void sweep(const dissection* d, part p, cut* c)
     for (int k = p.from; k < p.to; ++k)
         ++held[(int)along(c, d->place[d->node[k]])];
     int first = 0, last, before = held[0];
-    while (before < 0.4 * count)
-        before += held[++first];
+    for (; before < 0.4 * count; before += held[++first])
+        c->wide[0] += before < count / 3;
     for (last = first; last + 1 < bins && before + held[last + 1] <= 0.6 * count;)
         before += held[++last];
+    for (c->wide[1] = last; c->wide[1] + 1 < bins && before + held[c->wide[1] + 1] <= 2 * (count / 3);)
+        before += held[++c->wide[1]];
     for (int k = p.from; k < p.to; ++k) {
         int v = d->node[k], farthest = 0;
         double key = along(c, d->place[v]);
@@ -111,7 +116,211 @@ static void sweep(const dissection* d, part p, cut* c)
         if (size < c->size)
             c->size = size, c->bin = bin;
     }
+    int enough = count / 20 > c->size ? count / 20 : c->size;
+    for (int end = 0; end < 2; ++end) {
+        c->near[end] = c->bin + end;
+        for (int within = 0; c->near[end] > c->wide[0] && c->near[end] < c->wide[1] && within < enough;)
+            within += held[c->near[end] += end ? 1 : -1];
+    }
     ax_free(held);
+}
+
+// A band across a part, and paths across the band that share no node: a separator within it has at least one node of each, and
+// the least has no more (Menger 1927). They are found as a flow, by shortest augmenting paths (Dinic 1970). Every node is entered and
+// left, states 2 k and 2 k + 1; through a node that is on a path a search goes only backwards along it.
+enum { BEFORE = -1, BEHIND = -2, BETWEEN = -3, NONE = -4 };
+
+typedef struct band {
+    const dissection* d;
+    int part, count;
+    int* node;          // per node of the band
+    int* way[2];        // the nodes before and behind it on its path, BEFORE and BEHIND at the ends of one, NONE off all
+    unsigned char* rim; // bit 0: has a neighbour before the band, bit 1: behind it
+    int *distance;      // per state, -1: not reached
+    int *tried;         // per state: ways out that were tried
+    int *queue;         // room for all states
+} band;
+
+// Number in the band of neighbour e, negative if it lies elsewhere.
+static inline int in_band(const band* b, int e)
+{
+    int w = b->d->neighbour[e];
+    return b->d->part_of[w] == b->part ? b->d->side[w] : NONE;
+}
+
+static inline void visit(const band* b, int state, int distance, int* tail)
+{
+    if (b->distance[state] < 0)
+        b->distance[state] = distance, b->queue[(*tail)++] = state;
+}
+
+// Searches from before the band (`end` 0) or from behind it (1, everything the other way round). True if it comes across.
+static bool search(const band* b, int end)
+{
+    int head = 0, tail = 0;
+    bool across = false;
+    memset(b->distance, -1, 2 * (size_t)b->count * sizeof *b->distance);
+    for (int k = 0; k < b->count; ++k)
+        if (b->rim[k] >> end & 1)
+            visit(b, 2 * k + end, 0, &tail);
+    while (head < tail) {
+        int state = b->queue[head++], k = state / 2, next = b->distance[state] + 1, v = b->node[k];
+        if (state % 2 == end) {
+            int to = b->way[end][k] == NONE ? k : b->way[end][k];
+            if (to >= 0)
+                visit(b, 2 * to + !end, next, &tail);
+            continue;
+        }
+        across = across || (b->rim[k] >> !end & 1);
+        if (b->way[end][k] != NONE)
+            visit(b, 2 * k + end, next, &tail);
+        for (int e = b->d->start[v]; e < b->d->start[v + 1]; ++e) {
+            int to = in_band(b, e);
+            if (to >= 0)
+                visit(b, 2 * to + end, next, &tail);
+        }
+    }
+    return across;
+}
+
+// A state one step farther than this one, each once; -1: none, BEHIND: the path is across.
+static int advance(const band* b, int state)
+{
+    int k = state / 2, v = b->node[k], degree = b->d->start[v + 1] - b->d->start[v];
+    if (state % 2 && b->rim[k] & 2)
+        return BEHIND;
+    while (b->tried[state] <= (state % 2 ? degree : 0)) {
+        int way = b->tried[state]++, to;
+        if (state % 2 == 0)
+            to = b->way[0][k] == NONE ? 2 * k + 1 : 2 * b->way[0][k] + 1;
+        else if (way < degree)
+            to = 2 * in_band(b, b->d->start[v] + way);
+        else
+            to = b->way[0][k] == NONE ? -1 : 2 * k;
+        if (to >= 0 && b->distance[to] == b->distance[state] + 1)
+            return to;
+    }
+    return -1;
+}
+
+// Adds the path of these states to the flow.
+static void augment(const band* b, int count, const int* path)
+{
+    int from = BEFORE; // the node that was left last
+    for (int k = 0; k < count; ++k) {
+        int node = path[k] / 2;
+        if (path[k] % 2)
+            from = node;
+        else if (node == from) // no path comes through here any more
+            b->way[0][node] = b->way[1][node] = NONE;
+        else {
+            b->way[0][node] = from;
+            if (from >= 0)
+                b->way[1][from] = node;
+        }
+    }
+    b->way[1][from] = BEHIND;
+}
+
+// Finds as many paths as there are, or `enough`; returns how many.
+static int find_paths(const band* b, int enough)
+{
+    int found = 0, *path = b->queue;
+    while (found < enough && search(b, 0)) {
+        memset(b->tried, 0, 2 * (size_t)b->count * sizeof *b->tried);
+        for (int k = 0; k < b->count; ++k) {
+            if (!(b->rim[k] & 1))
+                continue;
+            int length = 1;
+            path[0] = 2 * k;
+            while (length) {
+                int to = advance(b, path[length - 1]);
+                if (to >= 0)
+                    path[length++] = to;
+                else if (to == BEHIND) {
+                    augment(b, length, path);
+                    ++found;
+                    while (length)
+                        b->distance[path[--length]] = -1; // a state is on one path a round
+                } else
+                    b->distance[path[--length]] = -1;
+            }
+        }
+    }
+    return found;
+}
+
+// On which side of the separator next to an end of the band, which was searched from there, a node lies.
+static int side_of(const band* b, int end, int k)
+{
+    if (b->distance[2 * k + !end] >= 0)
+        return end ? BEHIND : BEFORE;
+    return b->distance[2 * k + end] >= 0 ? BETWEEN : end ? BEFORE : BEHIND;
+}
+
+// Looks for a separator smaller than the cut's in a band of bins, and gives every node of the part its side. False if there is
+// none, or if the band does not part the two sides.
+static bool bend(const dissection* d, part p, const cut* c, const int bins[2])
+{
+    band b = {.d = d, .part = p.from, .node = d->scratch + p.from};
+    int before = 0, behind = 0;
+    for (int k = p.from; k < p.to; ++k) {
+        int v = d->node[k];
+        double key = along(c, d->place[v]);
+        d->side[v] = (int)key < bins[0] ? BEFORE : (int)key > bins[1] ? BEHIND : b.count;
+        if (d->side[v] >= 0)
+            b.node[b.count++] = v;
+        before += d->side[v] == BEFORE, behind += d->side[v] == BEHIND;
+        if (d->side[v] == BEFORE && key + d->reach[v] * c->scale > bins[1] + 1)
+            for (int e = d->start[v]; e < d->start[v + 1]; ++e)
+                if (d->part_of[d->neighbour[e]] == p.from && (int)along(c, d->place[d->neighbour[e]]) > bins[1])
+                    return false;
+    }
+    int* room = AX_NEW(int, 8 * (size_t)b.count);
+    b.way[0] = room, b.way[1] = room + b.count;
+    b.distance = room + 2 * (size_t)b.count, b.tried = room + 4 * (size_t)b.count, b.queue = room + 6 * (size_t)b.count;
+    b.rim = AX_NEW0(unsigned char, b.count);
+    for (int k = 0; k < b.count; ++k) {
+        b.way[0][k] = b.way[1][k] = NONE;
+        for (int e = d->start[b.node[k]]; e < d->start[b.node[k] + 1]; ++e) {
+            int to = in_band(&b, e);
+            b.rim[k] |= to == BEFORE ? 1 : to == BEHIND ? 2 : 0;
+        }
+    }
+    bool smaller = find_paths(&b, c->size) < c->size;
+    int larger[2];
+    for (int end = 0; end < 2 && smaller; ++end) { // both ends have one: that which leaves the sides more alike is taken
+        int size[] = {before, behind};
+        search(&b, end);
+        for (int k = 0; k < b.count; ++k)
+            if (side_of(&b, end, k) != BETWEEN)
+                ++size[side_of(&b, end, k) == BEHIND];
+        larger[end] = size[0] > size[1] ? size[0] : size[1];
+    }
+    int end = smaller && larger[1] < larger[0];
+    if (smaller && !end)
+        search(&b, end);
+    for (int k = 0; k < b.count && smaller; ++k)
+        d->side[b.node[k]] = side_of(&b, end, k);
+    ax_free(room);
+    ax_free(b.rim);
+    return smaller;
+}
+
+// Sides of a straight cut.
+static void cut_straight(const dissection* d, part p, const cut* c)
+{
+    for (int k = p.from; k < p.to; ++k) {
+        int v = d->node[k];
+        double key = along(c, d->place[v]);
+        d->side[v] = (int)key > c->bin ? BEHIND : BEFORE;
+        if (d->side[v] == BEFORE && key + d->reach[v] * c->scale > c->bin)
+            for (int e = d->start[v]; e < d->start[v + 1] && d->side[v] == BEFORE; ++e) {
+                int w = d->neighbour[e];
+                if (d->part_of[w] == p.from && (int)along(c, d->place[w]) > c->bin)
+                    d->side[v] = BETWEEN;
+            }
+    }
 }
 
 // Puts the nodes before the cut first, then those behind it, then the separator. False if either side would be empty.
@@ -119,19 +328,15 @@ static bool split(dissection* d, part p, const cut* c, part halves[2])
 {
     if (c->size == INT32_MAX)
         return false;
+    // where nothing is gained near the cut, as on straight rows, no more is looked at
+    if (!bend(d, p, c, c->near) || !bend(d, p, c, c->wide))
+        cut_straight(d, p, c);
     int low = p.from, high = p.from, separator = p.to;
     for (int k = p.from; k < p.to; ++k) {
         int v = d->node[k];
-        double key = along(c, d->place[v]);
-        bool behind = (int)key > c->bin, touches = false;
-        for (int e = d->start[v]; !behind && !touches && key + d->reach[v] * c->scale > c->bin && e < d->start[v + 1];
-             ++e) {
-            int w = d->neighbour[e];
-            touches = d->part_of[w] == p.from && (int)along(c, d->place[w]) > c->bin;
-        }
-        if (behind)
+        if (d->side[v] == BEHIND)
             d->scratch[high++] = v;
-        else if (touches)
+        else if (d->side[v] == BETWEEN)
             d->scratch[--separator] = v;
         else
             d->node[low++] = v;
@@ -330,6 +535,7 @@ void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], ax_poo
                     .reach = AX_NEW(double, n),
                     .node = order,
                     .part_of = AX_NEW0(int, n),
+                    .side = AX_NEW(int, n),
                     .scratch = AX_NEW(int, n)};
     part_list large = {0}, whole = {0};
     for (int v = 0; v < n; ++v)
@@ -364,7 +570,7 @@ void ax_order_by_place(const ax_sparse* matrix, const double (*place)[3], ax_poo
         ax_pool_run(pool, dissect_one, &d, whole.count);
     if (d.dense)
         order_by_degree(matrix, order);
-    void* blocks[] = {start, neighbour, d.reach, d.part_of, d.scratch, large.parts, whole.parts};
+    void* blocks[] = {start, neighbour, d.reach, d.part_of, d.side, d.scratch, large.parts, whole.parts};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
 }
