@@ -2,6 +2,8 @@
 #include "base/random.h"
 #include "linalg/block_factor.h"
 #include "linalg/cholesky.h"
+#include "linalg/order.h"
+#include "linalg/panels.h"
 
 #include "support/test.h"
 
@@ -178,6 +180,35 @@ static void blocks_are_solved_alike_by_any_number_of_threads(void** state)
         ax_free(arrays[k]);
 }
 
+// Entries of the factor of a grid, one unknown a node, ordered by its nodes' places.
+static double entries_by_place(const ax_blocks* blocks, const double (*place)[3])
+{
+    ax_sparse graph = {.n = blocks->n, .start = blocks->start, .row = blocks->row};
+    int* order = AX_NEW(int, graph.n);
+    ax_order_by_place(&graph, place, NULL, order);
+    ax_panels* panels = ax_panels_analyse(&graph, order);
+    double entries = ax_panels_entries(panels);
+    ax_panels_free(panels);
+    ax_free(order);
+    return entries;
+}
+
+static void curved_rows_are_ordered_as_well_as_straight_ones(void** state)
+{
+    (void)state;
+    enum { SIDE = 100 };
+    double(*place)[3] = ax_alloc(SIDE * SIDE, sizeof *place);
+    ax_blocks blocks = grid_of_blocks(SIDE, place);
+    double straight = entries_by_place(&blocks, (const double(*)[3])place);
+    for (int v = 0; v < SIDE * SIDE; ++v) { // a whirl: the farther out, the more it is turned
+        double x = place[v][0] - SIDE / 2, y = place[v][1] - SIDE / 2, turn = 0.7 * hypot(x, y) / SIDE;
+        place[v][0] = x * cos(turn) - y * sin(turn), place[v][1] = x * sin(turn) + y * cos(turn);
+    }
+    assert_at_most(entries_by_place(&blocks, (const double(*)[3])place) / straight, 1.05);
+    ax_blocks_free(&blocks);
+    ax_free(place);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -186,6 +217,7 @@ int main(void)
         cmocka_unit_test(every_kind_of_factor_solves),
         cmocka_unit_test(an_indefinite_matrix_is_reported_and_the_factor_stays_usable),
         cmocka_unit_test(blocks_are_solved_alike_by_any_number_of_threads),
+        cmocka_unit_test(curved_rows_are_ordered_as_well_as_straight_ones),
     };
     return cmocka_run_group_tests_name("linalg", tests, NULL, NULL);
 }

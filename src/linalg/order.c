@@ -133,12 +133,12 @@ enum { BEFORE = -1, BEHIND = -2, BETWEEN = -3, NONE = -4 };
 typedef struct band {
     const dissection* d;
     int part, count;
-    int* node;          // per node of the band
-    int* way[2];        // the nodes before and behind it on its path, BEFORE and BEHIND at the ends of one, NONE off all
+    int* node;   // per node of the band
+    int* way[2]; // the nodes before and behind it on its path, BEFORE and BEHIND at the ends of one, NONE off all
     unsigned char* rim; // bit 0: has a neighbour before the band, bit 1: behind it
-    int *distance;      // per state, -1: not reached
-    int *tried;         // per state: ways out that were tried
-    int *queue;         // room for all states
+    int* distance;      // per state, -1: not reached
+    int* tried;         // per state: ways out that were tried
+    int* queue;         // room for all states
 } band;
 
 // Number in the band of neighbour e, negative if it lies elsewhere.
@@ -289,7 +289,8 @@ static bool bend(const dissection* d, part p, const cut* c, const int bins[2])
     }
     bool smaller = find_paths(&b, c->size) < c->size;
     int larger[2];
-    for (int end = 0; end < 2 && smaller; ++end) { // both ends have one: that which leaves the sides more alike is taken
+    for (int end = 0; end < 2 && smaller;
+         ++end) { // both ends have one: that which leaves the sides more alike is taken
         int size[] = {before, behind};
         search(&b, end);
         for (int k = 0; k < b.count; ++k)
