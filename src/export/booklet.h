@@ -6,9 +6,26 @@
 
 #include <cairo.h>
 
+// Panels and names that wait to be drawn, see ax_booklet_flush.
+typedef struct ax_drawn_panel {
+    double corners[3][2];
+    unsigned char fill[3], line; // grey
+    int order;
+} ax_drawn_panel;
+
+typedef struct ax_drawn_name {
+    const char* text;
+    double middle[2], size;
+    unsigned char grey;
+    int order;
+} ax_drawn_name;
+
 typedef struct ax_booklet {
     cairo_surface_t* surface;
     cairo_t* cairo;
+    ax_drawn_panel* panels;
+    ax_drawn_name* names;
+    int panel_count, name_count, panel_room, name_room;
     const ax_design* design;
     const ax_cut_plan* plan;
     ax_assembly assembly;
@@ -53,8 +70,8 @@ typedef struct ax_table {
 } ax_table;
 void ax_table_row(ax_table* table, const char* const* cells);
 
-// A panel, drawn: tinted by its row or its step's piece (the upper of two layers darker), red if it collides with another, its name
-// inside if it is legible there. `corners` on paper.
+// A panel, drawn at the next flush: tinted by its row or its step's piece (the upper of two layers darker), red if it collides with
+// another, its name inside if it is legible there. `corners` on paper.
 typedef enum ax_panel_style {
     AX_PANEL_NAMED,
     AX_PANEL_ALWAYS_NAMED, // in letters of the least size if need be
@@ -63,7 +80,12 @@ typedef enum ax_panel_style {
     AX_PANEL_BACK,  // pale
 } ax_panel_style;
 void ax_booklet_panel(ax_booklet* b, int panel, const double corners[3][2], ax_panel_style style);
-void ax_booklet_dot(ax_booklet* b, const double at[2], double radius);
+// Draws the panels that wait, none of which may overlap another, all of a colour at once, then their names: what cairo takes is by
+// the operation.
+void ax_booklet_flush(ax_booklet* b);
+// Dots, added to the path, and drawn.
+void ax_booklet_dot(ax_booklet* b, const double at[2]);
+void ax_booklet_dots(ax_booklet* b, double radius);
 // Size of the letters with which a name of this length would fit a triangle; below AX_BOOKLET_LEGIBLE: too small.
 double ax_booklet_name_size(const double corners[3][2], int letters);
 #define AX_BOOKLET_LEGIBLE 1.7 // mm, of the font: about 5 pt

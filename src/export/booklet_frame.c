@@ -78,7 +78,8 @@ static void put_dimensions(const drawing* d)
         project(d, p->place, p->plan, at);
         project(d, next->place, end_along(d, k), to);
         cairo_set_source_rgb(b->cairo, 0.75, 0.1, 0.1);
-        ax_booklet_dot(b, at, 0.7);
+        ax_booklet_dot(b, at);
+        ax_booklet_dots(b, 0.7);
         double normal[2] = {to[1] - at[1], at[0] - to[0]}, length = fmax(hypot(normal[0], normal[1]), 1e-9);
         double side = normal[0] * (at[0] - middle[0]) + normal[1] * (at[1] - middle[1]) > 0 || d->unrolled ? 1 : -1;
         double unit[2] = {side * normal[0] / length, side * normal[1] / length};

@@ -80,6 +80,7 @@ static void draw_layout(ax_booklet* b, double scale, const double shift[2], cons
             bounds[3] >= box->y)
             ax_booklet_panel(b, t, (const double(*)[2])c, legible ? AX_PANEL_ALWAYS_NAMED : AX_PANEL_NAMED);
     }
+    ax_booklet_flush(b);
     for (int k = 0; k < b->assembly.step_count; ++k)
         put_step_number(b, k, scale, shift);
 }
@@ -201,6 +202,7 @@ typedef struct strips {
     double scale, y;     // where the next drawing may begin
     const int* hinge_of; // entry of the plan's hinges, -1
     int (*held)[2];
+    int part, *drawn; // the drawing at hand; the last one that shows a panel as there
 } strips;
 
 static bool is_there(const strips* s, int panel, int step)
@@ -213,14 +215,12 @@ static int other_panel(const strips* s, int panel, int hinge)
     return s->held[hinge][0] == panel ? s->held[hinge][1] : s->held[hinge][0];
 }
 
-static void dot(ax_booklet* b, const double at[2], bool red)
+// Whether a panel of a step lies between lo and hi along the row; its corners, unmoved.
+static bool is_in_part(const strips* s, int t, double lo, double hi, double scale, double corners[3][2])
 {
-    if (red)
-        cairo_set_source_rgb(b->cairo, 0.8, 0.1, 0.1);
-    else
-        ax_booklet_ink(b, 0.2);
-    ax_booklet_dot(b, at, red ? 0.7 : 0.45);
-    ax_booklet_ink(b, 0);
+    corners_of(s->b, t, scale, origin, corners);
+    double x = (corners[0][0] + corners[1][0] + corners[2][0]) / 3;
+    return x >= lo && x < hi;
 }
 
 // Panels of a step between lo and hi along the row, with those they hang on; `box` on paper is as high as they need.
@@ -228,34 +228,58 @@ static void draw_part(strips* s, int step, double lo, double hi, double scale, c
 {
     ax_booklet* b = s->b;
     const ax_assembly_step* st = &b->assembly.steps[step];
-    for (int pass = 0; pass < 3; ++pass) // what is there, what is added, hinges
+    double c[3][2];
+    ++s->part;
+    for (int i = st->first; i < st->first + st->count; ++i) {
+        int t = b->assembly.order[i];
+        if (!is_in_part(s, t, lo, hi, scale, c))
+            continue;
+        corners_of(b, t, scale, shift, c);
+        ax_booklet_panel(b, t, (const double(*)[2])c, AX_PANEL_ALWAYS_NAMED);
+        for (int k = 0; k < 3; ++k) {
+            int o = other_panel(s, t, b->design->linkage.triangles[t][k]);
+            if (!is_there(s, o, step) || s->drawn[o] == s->part)
+                continue;
+            s->drawn[o] = s->part;
+            corners_of(b, o, scale, shift, c);
+            ax_booklet_panel(b, o, (const double(*)[2])c, AX_PANEL_THERE);
+        }
+    }
+    ax_booklet_flush(b);
+    for (int red = 0; red < 2; ++red) { // hinges along the row, then those to what is there
         for (int i = st->first; i < st->first + st->count; ++i) {
             int t = b->assembly.order[i];
-            double c[3][2], unmoved[3][2];
-            corners_of(b, t, scale, origin, unmoved);
-            double x = (unmoved[0][0] + unmoved[1][0] + unmoved[2][0]) / 3;
-            if (x < lo || x >= hi)
+            if (!is_in_part(s, t, lo, hi, scale, c))
                 continue;
             corners_of(b, t, scale, shift, c);
-            if (pass == 1)
-                ax_booklet_panel(b, t, (const double(*)[2])c, AX_PANEL_ALWAYS_NAMED);
-            for (int k = 0; k < 3 && pass != 1; ++k) {
-                int h = b->design->linkage.triangles[t][k], o = other_panel(s, t, h);
-                bool same = o >= 0 && b->assembly.step_of[o] == step;
-                if (pass == 2 && (is_there(s, o, step) || (same && st->piece < 0)))
-                    dot(b, c[k], !same);
-                if (pass == 2 && st->piece >= 0 && is_there(s, o, step) && s->hinge_of[h] >= 0) {
-                    char number[16];
-                    snprintf(number, sizeof number, "%d", b->plan->hinges[s->hinge_of[h]].seam);
-                    ax_booklet_text(b, c[k][0] + 1, c[k][1] - 0.8, 1.9, AX_LEFT, number);
-                }
-                if (pass == 0 && is_there(s, o, step)) {
-                    double d[3][2];
-                    corners_of(b, o, scale, shift, d);
-                    ax_booklet_panel(b, o, (const double(*)[2])d, AX_PANEL_THERE);
-                }
+            for (int k = 0; k < 3; ++k) {
+                int o = other_panel(s, t, b->design->linkage.triangles[t][k]);
+                bool same = st->piece < 0 && o >= 0 && b->assembly.step_of[o] == step;
+                if (red ? is_there(s, o, step) : same)
+                    ax_booklet_dot(b, c[k]);
             }
         }
+        if (red)
+            cairo_set_source_rgb(b->cairo, 0.8, 0.1, 0.1);
+        else
+            ax_booklet_ink(b, 0.2);
+        ax_booklet_dots(b, red ? 0.7 : 0.45);
+    }
+    ax_booklet_ink(b, 0);
+    for (int i = st->first; i < st->first + st->count && st->piece >= 0; ++i) {
+        int t = b->assembly.order[i];
+        if (!is_in_part(s, t, lo, hi, scale, c))
+            continue;
+        corners_of(b, t, scale, shift, c);
+        for (int k = 0; k < 3; ++k) {
+            int h = b->design->linkage.triangles[t][k];
+            char number[16];
+            if (!is_there(s, other_panel(s, t, h), step) || s->hinge_of[h] < 0)
+                continue;
+            snprintf(number, sizeof number, "%d", b->plan->hinges[s->hinge_of[h]].seam);
+            ax_booklet_text(b, c[k][0] + 1, c[k][1] - 0.8, 1.9, AX_LEFT, number);
+        }
+    }
 }
 
 static void bounds_of_part(const strips* s, int step, double lo, double hi, double scale, double bounds[4])
@@ -266,9 +290,7 @@ static void bounds_of_part(const strips* s, int step, double lo, double hi, doub
     for (int i = st->first; i < st->first + st->count; ++i) {
         int t = b->assembly.order[i];
         double c[3][2];
-        corners_of(b, t, scale, origin, c);
-        double x = (c[0][0] + c[1][0] + c[2][0]) / 3;
-        if (x < lo || x >= hi)
+        if (!is_in_part(s, t, lo, hi, scale, c))
             continue;
         widen(bounds, (const double(*)[2])c);
         for (int k = 0; k < 3; ++k) {
@@ -276,7 +298,6 @@ static void bounds_of_part(const strips* s, int step, double lo, double hi, doub
             if (is_there(s, o, step)) {
                 corners_of(b, o, scale, origin, c);
                 widen(bounds, (const double(*)[2])c);
-                corners_of(b, t, scale, origin, c);
             }
         }
     }
@@ -353,7 +374,8 @@ void ax_booklet_order(ax_booklet* b)
                 .y = ax_booklet_body().y,
                 .line = pieces ? "Pale: pieces that are there. Red: hinges to close, with the seam's number."
                                : "Pale: panels that are there. Red: hinges to them. Black: hinges along the row.",
-                .held = ax_alloc((size_t)b->design->linkage.hinge_count, sizeof(int[2]))};
+                .held = ax_alloc((size_t)b->design->linkage.hinge_count, sizeof(int[2])),
+                .drawn = AX_NEW0(int, plan->panel_count)};
     int* hinge_of = AX_NEW(int, b->design->linkage.hinge_count);
     memset(hinge_of, -1, (size_t)b->design->linkage.hinge_count * sizeof *hinge_of);
     memset(s.held, -1, (size_t)b->design->linkage.hinge_count * sizeof *s.held);
@@ -369,4 +391,5 @@ void ax_booklet_order(ax_booklet* b)
     ax_booklet_end_page(b);
     ax_free(hinge_of);
     ax_free(s.held);
+    ax_free(s.drawn);
 }

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct view {
     const char *section, *heading;
@@ -67,8 +68,9 @@ static void put_supports(ax_booklet* b, const sight* s, bool names)
         double at[2];
         order[k] = (depth){-ax_dot3(b->frame.points[k].place, s->v->toward), k};
         see(s, b->design->deployed[b->frame.points[k].hinge], at);
-        ax_booklet_dot(b, at, 0.6);
+        ax_booklet_dot(b, at);
     }
+    ax_booklet_dots(b, 0.6);
     qsort(order, (size_t)n, sizeof *order, far_first);
     for (int k = 0; k < n && names; ++k) {
         double at[2], *to = place[written];
@@ -89,6 +91,93 @@ static void put_supports(ax_booklet* b, const sight* s, bool names)
     ax_booklet_ink(b, 0);
     ax_free(order);
     ax_free(place);
+}
+
+// --- layers
+
+// A panel as it is seen: panels of one layer hide nothing of each other, those of higher ones lie in front.
+typedef struct seen {
+    double corners[3][2];
+    int panel, layer, place; // place: from back to front
+    ax_panel_style style;
+} seen;
+
+static int by_layer(const void* a, const void* b)
+{
+    const seen *x = a, *y = b;
+    return x->layer != y->layer ? x->layer - y->layer : x->place - y->place;
+}
+
+// Whether a line along an edge of `a` has `b` on its other side, or nearly.
+static bool edge_parts(const double a[3][2], const double b[3][2])
+{
+    static const double nearly = 0.02; // mm, less than lines are wide
+    for (int k = 0; k < 3; ++k) {
+        const double *p = a[k], *q = a[(k + 1) % 3];
+        double inner = ax_orient2(p, q, a[(k + 2) % 3]), outer = -INFINITY;
+        for (int i = 0; i < 3; ++i)
+            outer = fmax(outer, (inner < 0 ? -1 : 1) * ax_orient2(p, q, b[i]));
+        if (outer <= nearly * ax_distance2(p, q))
+            return true;
+    }
+    return false;
+}
+
+static void bounds_of(const seen* s, double cell, int lo[2], int hi[2])
+{
+    for (int d = 0; d < 2; ++d) {
+        const double x[3] = {s->corners[0][d], s->corners[1][d], s->corners[2][d]};
+        lo[d] = (int)floor(fmin(fmin(x[0], x[1]), x[2]) / cell);
+        hi[d] = (int)floor(fmax(fmax(x[0], x[1]), x[2]) / cell);
+    }
+}
+
+// Each panel, from back to front, is one layer above the highest that it hides a part of.
+static void find_layers(seen* all, int count, const ax_box* box)
+{
+    double size = 0;
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < 3; ++k)
+            size += ax_distance2(all[i].corners[k], all[i].corners[(k + 1) % 3]) / (3 * count);
+    const double cell = fmax(size, 0.5);
+    const int columns = (int)((box->x + box->width) / cell) + 2, rows = (int)((box->y + box->height) / cell) + 2;
+    int* latest = AX_NEW(int, columns* rows); // entry of each cell, each leads to the one before
+    int(*entries)[2] = NULL, entry_count = 0, entry_room = 0;
+    memset(latest, -1, (size_t)(columns * rows) * sizeof *latest);
+    for (int i = 0; i < count; ++i) {
+        int lo[2], hi[2];
+        bounds_of(&all[i], cell, lo, hi);
+        all[i].layer = 0;
+        for (int y = lo[1]; y <= hi[1]; ++y)
+            for (int x = lo[0]; x <= hi[0]; ++x) {
+                int* at = &latest[y * columns + x];
+                for (int e = *at; e >= 0; e = entries[e][1]) {
+                    const seen* other = &all[entries[e][0]];
+                    if (other->layer >= all[i].layer &&
+                        !edge_parts((const double(*)[2])all[i].corners, (const double(*)[2])other->corners) &&
+                        !edge_parts((const double(*)[2])other->corners, (const double(*)[2])all[i].corners))
+                        all[i].layer = other->layer + 1;
+                }
+                if (entry_count == entry_room) {
+                    entry_room = 2 * entry_room + 1024;
+                    entries = ax_realloc(entries, (size_t)entry_room, sizeof *entries);
+                }
+                entries[entry_count][0] = i, entries[entry_count][1] = *at;
+                *at = entry_count++;
+            }
+    }
+    ax_free(entries);
+    ax_free(latest);
+}
+
+static void draw_seen(ax_booklet* b, seen* all, int count)
+{
+    qsort(all, (size_t)count, sizeof *all, by_layer);
+    for (int i = 0; i < count; ++i) {
+        ax_booklet_panel(b, all[i].panel, (const double(*)[2])all[i].corners, all[i].style);
+        if (i + 1 == count || all[i + 1].layer != all[i].layer)
+            ax_booklet_flush(b);
+    }
 }
 
 void ax_booklet_draw_view(ax_booklet* b, ax_booklet_view which, const ax_box* box, bool names, char scale[32])
@@ -118,21 +207,28 @@ void ax_booklet_draw_view(ax_booklet* b, ax_booklet_view which, const ax_box* bo
     // the shell's outer side faces up, or, if it stands, whoever looks at it from over there
     double outer = ax_dot3(sum, v->toward) < 0 && fabs(ax_dot3(sum, v->toward)) > 0.3 * ax_norm3(sum) ? -1 : 1;
     qsort(order, (size_t)l->triangle_count, sizeof *order, far_first);
+    int count = 0;
+    seen* all = AX_NEW(seen, l->triangle_count);
     for (int pass = 0; pass < 2; ++pass) // backs first: whatever is behind, they are seen through the holes
         for (int i = 0; i < l->triangle_count; ++i) {
             int t = order[i].panel;
-            double corners[3][2], n[3];
+            double n[3];
             panel_vector(b, t, n);
             bool back = outer * ax_dot3(n, v->toward) < 0;
             if (back == pass)
                 continue;
+            all[count] = (seen){.panel = t,
+                                .place = count,
+                                .style = back    ? AX_PANEL_BACK
+                                         : names ? AX_PANEL_NAMED
+                                                 : AX_PANEL_PLAIN};
             for (int k = 0; k < 3; ++k)
-                see(&s, places[l->triangles[t][k]], corners[k]);
-            ax_booklet_panel(b, t, (const double(*)[2])corners,
-                             back    ? AX_PANEL_BACK
-                             : names ? AX_PANEL_NAMED
-                                     : AX_PANEL_PLAIN);
+                see(&s, places[l->triangles[t][k]], all[count].corners[k]);
+            ++count;
         }
+    find_layers(all, count, box);
+    draw_seen(b, all, count);
+    ax_free(all);
     put_supports(b, &s, names);
     ax_free(order);
 }
