@@ -7,6 +7,7 @@
 #include "ax/export.h"
 #include "base/clock.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,47 +55,92 @@ static double peak_megabytes(void)
     return (double)usage.ru_maxrss / 1024;
 }
 
-// Takes down when the proof of clearance begins.
+// Takes down when the proof of clearance and the writing begin.
+typedef struct stages {
+    double proving, writing;
+} stages;
+
 static bool watch(void* context, const char* stage, double fraction, double residual)
 {
-    double* begun = context;
+    stages* s = context;
     (void)fraction, (void)residual;
-    if (strncmp(stage, "Proving clearance", strlen("Proving clearance")) == 0 && *begun == 0)
-        *begun = ax_seconds();
+    if (strncmp(stage, "Proving clearance", strlen("Proving clearance")) == 0 && s->proving == 0)
+        s->proving = ax_seconds();
+    if (strcmp(stage, "Writing") == 0)
+        s->writing = ax_seconds();
     return true;
 }
 
-// Seconds for all sheets and the overview in one format; the file is written again and again.
-static double write_sheets(const ax_export_type* type, const ax_design* design, const ax_cut_plan* plan)
+enum { MOST_FORMATS = 32 };
+
+// The endings of cut files; returns how many.
+static int cut_formats(const ax_export_type* formats[MOST_FORMATS])
 {
-    char path[] = "/tmp/bench_fabricate_XXXXXX";
-    int file = mkstemp(path), last = type->all_sheets || plan->sheet_count == 1 ? 0 : plan->sheet_count;
-    ax_error error;
-    double start = ax_seconds();
-    for (int s = 0; s <= last; ++s)
-        require(type->write_sheet(design, plan, s, path, &error), &error);
-    double seconds = ax_seconds() - start;
-    close(file);
-    unlink(path);
-    return seconds;
+    int all, count = 0;
+    const ax_export_type* const* types = ax_export_types(&all);
+    for (int k = 0; k < all && count < MOST_FORMATS; ++k)
+        if (types[k]->write_sheet)
+            formats[count++] = types[k];
+    return count;
 }
 
-// "svg 1.23  dxf 2.34", and their sum.
-static double write_all(const ax_design* design, const ax_cut_plan* plan, char* words, size_t size)
+static void remove_folder(const char* folder)
 {
-    int count;
-    const ax_export_type* const* types = ax_export_types(&count);
-    double sum = 0;
+    DIR* open = opendir(folder);
+    for (struct dirent* e; open && (e = readdir(open));)
+        unlinkat(dirfd(open), e->d_name, 0);
+    closedir(open);
+    rmdir(folder);
+}
+
+// Seconds of each stage, from the design to every format on the disk.
+typedef struct times {
+    double plan, clearance, write;
+} times;
+
+static times export_all(const ax_design* design, const ax_fabricate_options* options, ax_cut_plan* plan)
+{
+    const ax_export_type* formats[MOST_FORMATS];
+    char folder[] = "/tmp/bench_fabricate_XXXXXX", names[MOST_FORMATS][64];
+    const char* paths[MOST_FORMATS];
+    int count = cut_formats(formats);
+    stages at = {0};
+    const ax_progress progress = {watch, &at};
+    ax_error error;
+    if (!mkdtemp(folder)) {
+        perror(folder);
+        exit(1);
+    }
+    for (int k = 0; k < count; ++k) {
+        snprintf(names[k], sizeof names[k], "%s/dome%s", folder, formats[k]->ending);
+        paths[k] = names[k];
+    }
+    const ax_export_options how = {.title = "dome", .fabricate = options, .progress = &progress, .plan = plan};
+    double start = ax_seconds();
+    require(ax_export_files(design, count, paths, &how, &error), &error);
+    double end = ax_seconds();
+    remove_folder(folder);
+    return (times){at.proving - start, at.writing - at.proving, end - at.writing};
+}
+
+// "svg 1.23  dxf 2.34": seconds for all sheets and the overview in each format, one after the other.
+static void time_formats(const ax_design* design, const ax_cut_plan* plan, char* words, size_t size)
+{
+    const ax_export_type* formats[MOST_FORMATS];
+    int count = cut_formats(formats);
     *words = '\0';
     for (int k = 0; k < count; ++k) {
-        if (!types[k]->write_sheet)
-            continue;
-        double seconds = write_sheets(types[k], design, plan);
+        char path[] = "/tmp/bench_fabricate_XXXXXX";
+        int file = mkstemp(path), last = formats[k]->all_sheets || plan->sheet_count == 1 ? 0 : plan->sheet_count;
+        ax_error error;
+        double start = ax_seconds();
+        for (int s = 0; s <= last; ++s)
+            require(formats[k]->write_sheet(design, plan, s, path, &error), &error);
         size_t used = strlen(words);
-        snprintf(words + used, size - used, "  %s %.2f", types[k]->ending, seconds);
-        sum += seconds;
+        snprintf(words + used, size - used, "  %s %.2f", formats[k]->ending, ax_seconds() - start);
+        close(file);
+        unlink(path);
     }
-    return sum;
 }
 
 int main(int argc, char** argv)
@@ -120,29 +166,26 @@ int main(int argc, char** argv)
     const ax_joint_type* const* types = ax_joint_types(&joints);
     fprintf(file, "[");
     const char* separator = "";
-    printf("joint           panels  sheets  labels beside/none   plan  clearance   write     MB  by format\n");
+    printf("joint           panels  sheets  labels beside/none   plan  clearance   write     all     MB  by format\n");
     for (int s = 0; s < count; ++s) {
         ax_design design = make_design(&surface, sizes[s]);
         for (int j = 0; j < joints; ++j) {
             ax_fabricate_options options = ax_fabricate_options_default();
-            double begun = 0;
-            const ax_progress progress = {watch, &begun};
             ax_cut_plan plan;
             options.joint = types[j];
             options.sheet[0] = 1220, options.sheet[1] = 2440, options.kerf = 0.2;
-            double start = ax_seconds();
-            require(ax_fabricate(&design, &options, &progress, &plan, &error), &error);
-            double planning = begun - start, proving = ax_seconds() - begun;
+            times t = export_all(&design, &options, &plan);
             char words[256];
-            double writing = write_all(&design, &plan, words, sizeof words), megabytes = peak_megabytes();
-            printf("%-14s %7d %7d %12d/%-6d %7.3f %10.3f %7.3f %6.0f %s\n", types[j]->name, plan.panel_count,
-                   plan.sheet_count, plan.labels_outside, plan.labels_dropped, planning, proving, writing, megabytes,
-                   words);
+            double megabytes = peak_megabytes(), all = t.plan + t.clearance + t.write;
+            time_formats(&design, &plan, words, sizeof words);
+            printf("%-14s %7d %7d %12d/%-6d %7.3f %10.3f %7.3f %7.3f %6.0f %s\n", types[j]->name, plan.panel_count,
+                   plan.sheet_count, plan.labels_outside, plan.labels_dropped, t.plan, t.clearance, t.write, all,
+                   megabytes, words);
             fprintf(
                 file,
                 "%s\n  {\"joint\": \"%s\", \"panels\": %d, \"sheets\": %d, \"plan_s\": %.6g, \"clearance_s\": %.6g, "
                 "\"write_s\": %.6g, \"peak_mb\": %.6g}",
-                separator, types[j]->name, plan.panel_count, plan.sheet_count, planning, proving, writing, megabytes);
+                separator, types[j]->name, plan.panel_count, plan.sheet_count, t.plan, t.clearance, t.write, megabytes);
             separator = ",";
             fflush(stdout);
             ax_cut_plan_free(&plan);

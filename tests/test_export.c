@@ -946,6 +946,52 @@ static void sheets_are_files_beside_an_overview(void** state)
     ax_cut_plan_free(&plan);
 }
 
+// Every format that the states allow, at once, and each by itself: the same bytes.
+static void files_written_side_by_side_are_those_written_alone(void** state)
+{
+    (void)state;
+    static const char* const names[] = {"d.svg", "d.dxf", "d.r12.dxf", "d.pdf",  "d.a4.pdf", "d.plan.pdf",
+                                        "d.csv", "d.3mf", "d.obj",     "d.json", "d.glb",    "d.png"};
+    enum { COUNT = sizeof names / sizeof *names };
+    ax_fabricate_options fabricate = ax_fabricate_options_default();
+    ax_error error;
+    assert_int_equal(ax_fabricate_set_joint(&fabricate, "ring", &error), AX_OK);
+    assert_int_equal(ax_fabricate_set_material(&fabricate, "plywood-3", &error), AX_OK);
+    fabricate.sheet[0] = 900, fabricate.sheet[1] = 600, fabricate.frames = 0;
+    ax_cut_plan plan;
+    const ax_export_options options = {.title = "dome", .fabricate = &fabricate, .plan = &plan};
+    char* paths[COUNT];
+    for (int k = 0; k < COUNT; ++k)
+        paths[k] = strdup(in_folder(names[k]));
+    if (ax_export_files(&sample, COUNT, (const char* const*)paths, &options, &error) != AX_OK)
+        fail_msg("%s", error.message);
+    char* together[COUNT];
+    size_t size[COUNT], alone;
+    for (int k = 0; k < COUNT; ++k)
+        together[k] = read_bytes(paths[k], &size[k]);
+    assert_int_equal(clear_folder(), COUNT + 3 * plan.sheet_count);
+    ax_cut_plan_free(&plan);
+    for (int k = 0; k < COUNT; ++k) {
+        assert_int_equal(
+            ax_export(&sample, paths[k], &(ax_export_options){.title = "dome", .fabricate = &fabricate}, &error),
+            AX_OK);
+        char* bytes = read_bytes(paths[k], &alone);
+        assert_int_equal(alone, size[k]);
+        assert_memory_equal(bytes, together[k], alone);
+        free(bytes);
+        free(together[k]);
+    }
+    clear_folder();
+    // one that cannot be written, and none is
+    const char* const mixed[] = {paths[0], paths[1], "/nowhere/d.obj"};
+    assert_int_equal(ax_export_files(&sample, 3, mixed, &options, &error), AX_FAILED);
+    assert_non_null(strstr(error.message, "/nowhere/d.obj"));
+    assert_int_equal(plan.sheet_count, 0);
+    assert_int_equal(clear_folder(), 0);
+    for (int k = 0; k < COUNT; ++k)
+        free(paths[k]);
+}
+
 static void coupons_go_to_cut_files_only(void** state)
 {
     (void)state;
@@ -1070,6 +1116,7 @@ int main(void)
         cmocka_unit_test(svg_is_the_same_wherever_the_design_lies),
         cmocka_unit_test(svg_is_well_formed_whatever_the_title),
         cmocka_unit_test(sheets_are_files_beside_an_overview),
+        cmocka_unit_test(files_written_side_by_side_are_those_written_alone),
         cmocka_unit_test(coupons_go_to_cut_files_only),
         cmocka_unit_test(numbers_are_set_as_printf_sets_them),
         cmocka_unit_test(letters_differ_and_keep_to_their_cells),

@@ -10,7 +10,8 @@
 #include <string.h>
 
 typedef struct arguments {
-    const char *document, *out;
+    const char* document;
+    word_list out;
     ax_state state;
     fabricate_arguments fabricate;
     int clusters;
@@ -27,8 +28,9 @@ static const command_option options[] = {
     OPTION_DOCUMENT(arguments),
     {.name = "-o",
      .value = "FILE",
-     .text = "the file to write; its ending chooses the format",
-     .kind = OPTION_TEXT,
+     .text = "a file to write; its ending chooses the format. Given several times, all files are written at once, of "
+             "one plan",
+     .kind = OPTION_WORDS,
      .required = true,
      .offset = offsetof(arguments, out)},
     {.name = "--state",
@@ -82,7 +84,7 @@ static ax_status write_applied(const ax_session* session, const char* path, ax_e
 }
 
 // The steps that are applied, as a recipe that `run` plays.
-static ax_status export_recipe(const arguments* a, ax_error* error)
+static ax_status export_recipe(const arguments* a, const char* path, ax_error* error)
 {
     ax_session* session;
     ax_status status = ax_session_open(a->document, false, NULL, progress_reporter(), &session, error);
@@ -95,24 +97,19 @@ static ax_status export_recipe(const arguments* a, ax_error* error)
                     "%s began as a finished design, so it has no recipe of its own. Export the design itself: .json.",
                     a->document);
     else
-        status = write_applied(session, a->out, error);
+        status = write_applied(session, path, error);
     ax_session_close(session);
     if (status == AX_OK)
-        printf("Wrote %s\n", a->out);
+        printf("Wrote %s\n", path);
     return status;
 }
 
-static ax_status run(const void* given, ax_error* error)
+static ax_status export_design(const arguments* a, int count, const char* const* paths, ax_error* error)
 {
-    const arguments* a = given;
     ax_design design = {0};
     ax_cut_plan plan = {0};
     fabricate_choice chosen;
-    ax_status status = output_check(a->out, NULL, error);
-    if (status == AX_OK && ends_in(a->out, ".recipe.json"))
-        return export_recipe(a, error);
-    if (status == AX_OK)
-        status = fabricate_choose(&a->fabricate, a->document, &chosen, error);
+    ax_status status = fabricate_choose(&a->fabricate, a->document, &chosen, error);
     chosen.options.sizes = a->clusters;
     if (status == AX_OK)
         status = ax_document_load(a->document, &design, error);
@@ -124,15 +121,38 @@ static ax_status run(const void* given, ax_error* error)
                                        .fabricate = &chosen.options,
                                        .progress = progress_reporter(),
                                        .plan = &plan};
-        status = ax_export(&design, a->out, &how, error);
+        status = ax_export_files(&design, count, paths, &how, error);
         progress_end();
     }
-    if (status == AX_OK)
-        printf("Wrote %s\n", a->out);
+    for (int k = 0; k < count && status == AX_OK; ++k)
+        printf("Wrote %s\n", paths[k]);
     if (status == AX_OK && plan.sheet_count)
         fabricate_print(&plan, stdout);
     ax_cut_plan_free(&plan);
     ax_design_free(&design);
+    return status;
+}
+
+static ax_status run(const void* given, ax_error* error)
+{
+    const arguments* a = given;
+    const char *recipe = NULL, *paths[sizeof a->out.words / sizeof *a->out.words];
+    int count = 0;
+    ax_status status = AX_OK;
+    for (int k = 0; k < a->out.count && status == AX_OK; ++k) {
+        const char* path = a->out.words[k];
+        status = output_check(path, NULL, error);
+        if (!ends_in(path, ".recipe.json"))
+            paths[count++] = path;
+        else if (!recipe)
+            recipe = path;
+        else
+            status = ax_fail(error, AX_USAGE, "%s and %s would be the same recipe. Name one.", recipe, path);
+    }
+    if (status == AX_OK && recipe)
+        status = export_recipe(a, recipe, error);
+    if (status == AX_OK && count)
+        status = export_design(a, count, paths, error);
     return status;
 }
 

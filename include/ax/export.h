@@ -40,5 +40,10 @@ const ax_export_type* const* ax_export_types(int* count);
 // AX_BAD_INPUT when the state is missing (not simulated); AX_FAILED when the disk does not take it.
 ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error);
 
+// The same for several files, in several formats if wanted: one plan is made for all cut files, and they are written side by side.
+// Either all files are there in the end or none has changed, but for a disk that fails while they are renamed.
+ax_status ax_export_files(const ax_design* design, int count, const char* const* paths,
+                          const ax_export_options* options, ax_error* error);
+
 // The same for a plan without a design, as ax_fabricate_coupon makes it. AX_USAGE unless the ending is that of a cut file.
 ax_status ax_export_plan(const ax_cut_plan* plan, const char* path, ax_error* error);

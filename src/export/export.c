@@ -1,9 +1,12 @@
 #include "ax/export.h"
 
 #include "base/file.h"
+#include "base/pool.h"
 
 #include <assert.h>
 #include <locale.h>
+#include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -69,113 +72,163 @@ static void name_destination(const ax_file* file, ax_error* error)
     }
 }
 
-// What is written: a file as `write` makes it, or one sheet of a plan.
+// One format: a file as `write` makes it, or a plan's sheets.
 typedef struct job {
     const ax_design* design;
+    const char* path;
     const ax_export_type* type;
     ax_state state;
     const ax_export_options* options;
-    const ax_cut_plan* plan;
+    const ax_cut_plan* plan; // of cut files
 } job;
 
-static ax_status write_file(const job* j, int sheet, ax_file* file, ax_error* error)
+// One file of a job, for a thread.
+typedef struct piece {
+    const job* job;
+    int sheet;
+    ax_file file;
+    ax_status status;
+    ax_error error;
+} piece;
+
+static void write_piece(piece* p)
 {
+    const job* j = p->job;
     // numbers have a decimal point whatever the program's locale says
     locale_t plain = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0), before = uselocale(plain);
-    ax_status status = j->plan ? j->type->write_sheet(j->design, j->plan, sheet, file->path, error)
-                               : j->type->write(j->design, j->state, j->options, file->path, error);
+    p->status = j->plan ? j->type->write_sheet(j->design, j->plan, p->sheet, p->file.path, &p->error)
+                        : j->type->write(j->design, j->state, j->options, p->file.path, &p->error);
     uselocale(before);
     freelocale(plain);
-    if (status != AX_OK)
-        name_destination(file, error);
-    return status;
+    if (p->status != AX_OK)
+        name_destination(&p->file, &p->error);
 }
 
-static ax_status write_one(const job* j, const char* path, ax_error* error)
+static bool has_sheet_files(const job* j)
 {
-    ax_file file;
-    ax_status status = ax_file_begin_path(&file, path, error);
-    if (status != AX_OK)
-        return status;
-    status = write_file(j, 0, &file, error);
-    if (status == AX_OK)
-        return ax_file_commit(&file, error);
-    ax_file_abandon(&file);
-    return status;
+    return j->plan && j->plan->sheet_count > 1 && !j->type->all_sheets;
 }
 
 // "dome.svg" and sheet 2 to "dome-3.svg"; the overview keeps the name.
-static char* sheet_path(const job* j, const char* path, int sheet)
+static char* piece_path(const piece* p)
 {
-    size_t length = strlen(path), stem = length - strlen(j->type->ending);
+    const char* path = p->job->path;
+    size_t length = strlen(path), stem = length - strlen(p->job->type->ending);
     char* name = ax_alloc(length + 16, 1);
-    if (sheet == j->plan->sheet_count)
-        snprintf(name, length + 16, "%s", path);
+    if (has_sheet_files(p->job) && p->sheet < p->job->plan->sheet_count)
+        snprintf(name, length + 16, "%.*s-%d%s", (int)stem, path, p->sheet + 1, path + stem);
     else
-        snprintf(name, length + 16, "%.*s-%d%s", (int)stem, path, sheet + 1, path + stem);
+        snprintf(name, length + 16, "%s", path);
     return name;
 }
 
-// All sheets are written before the first is renamed.
-static ax_status write_sheets(const job* j, const char* path, ax_error* error)
+// Files of all sheets come first: they take longest.
+static piece* make_pieces(int job_count, const job* jobs, int* count)
 {
-    int count = j->plan->sheet_count + 1, begun = 0;
-    ax_file* files = AX_NEW0(ax_file, count);
+    *count = 0;
+    for (int k = 0; k < job_count; ++k)
+        *count += has_sheet_files(&jobs[k]) ? jobs[k].plan->sheet_count + 1 : 1;
+    piece* pieces = AX_NEW0(piece, *count);
+    for (int pass = 0, at = 0; pass < 2; ++pass)
+        for (int k = 0; k < job_count; ++k) {
+            if (has_sheet_files(&jobs[k]) != pass)
+                continue;
+            for (int sheet = 0; sheet < (pass ? jobs[k].plan->sheet_count + 1 : 1); ++sheet)
+                pieces[at++] = (piece){.job = &jobs[k], .sheet = sheet};
+        }
+    return pieces;
+}
+
+typedef struct queue {
+    piece* pieces;
+    int count;
+    atomic_int next;
+} queue;
+
+static void work(void* context, int thread)
+{
+    (void)thread;
+    queue* q = context;
+    for (int k; (k = atomic_fetch_add(&q->next, 1)) < q->count;)
+        write_piece(&q->pieces[k]);
+}
+
+// All files are written, by all threads, before the first is renamed.
+static ax_status write_jobs(int job_count, const job* jobs, ax_error* error)
+{
+    queue q = {0};
+    int begun = 0;
     ax_status status = AX_OK;
-    for (; begun < count && status == AX_OK; ++begun) {
-        char* name = sheet_path(j, path, begun);
-        status = ax_file_begin_path(&files[begun], name, error);
+    q.pieces = make_pieces(job_count, jobs, &q.count);
+    for (; begun < q.count && status == AX_OK; ++begun) {
+        char* name = piece_path(&q.pieces[begun]);
+        status = ax_file_begin_path(&q.pieces[begun].file, name, error);
         ax_free(name);
         if (status != AX_OK)
             break;
-        status = write_file(j, begun, &files[begun], error);
     }
+    if (status == AX_OK) {
+        ax_pool* pool = ax_pool_make(q.count > 1 ? 0 : 1);
+        ax_pool_run(pool, work, &q, ax_pool_threads(pool));
+        ax_pool_free(pool);
+    }
+    for (int k = 0; k < begun && status == AX_OK; ++k)
+        if (q.pieces[k].status != AX_OK)
+            status = ax_fail(error, q.pieces[k].status, "%s", q.pieces[k].error.message);
     for (int k = 0; k < begun; ++k)
         if (status == AX_OK)
-            status = ax_file_commit(&files[k], error);
+            status = ax_file_commit(&q.pieces[k].file, error);
         else
-            ax_file_abandon(&files[k]);
-    ax_free(files);
+            ax_file_abandon(&q.pieces[k].file);
+    ax_free(q.pieces);
     return status;
 }
 
-static ax_status write_plan(const job* j, const char* path, ax_error* error)
+static ax_status make_plan(const ax_design* design, const ax_export_options* options, ax_cut_plan* plan,
+                           ax_error* error)
 {
-    bool one_file = j->plan->sheet_count == 1 || j->type->all_sheets;
-    return one_file ? write_one(j, path, error) : write_sheets(j, path, error);
+    ax_fabricate_options fabricate = options->fabricate ? *options->fabricate : ax_fabricate_options_default();
+    fabricate.title = options->title;
+    return ax_fabricate(design, &fabricate, options->progress, plan, error);
 }
 
-static ax_status fabricate_and_write(job* j, const char* path, ax_error* error)
+ax_status ax_export_files(const ax_design* design, int count, const char* const* paths,
+                          const ax_export_options* options, ax_error* error)
 {
-    ax_fabricate_options fabricate = j->options->fabricate ? *j->options->fabricate : ax_fabricate_options_default();
-    fabricate.title = j->options->title;
-    ax_cut_plan plan;
-    ax_status status = ax_fabricate(j->design, &fabricate, j->options->progress, &plan, error);
-    if (status != AX_OK)
-        return status;
-    j->plan = &plan;
-    status = write_plan(j, path, error);
-    if (status == AX_OK && j->options->plan)
-        *j->options->plan = plan;
-    else
+    const ax_export_options given = options ? *options : (ax_export_options){0};
+    job* jobs = AX_NEW0(job, count);
+    ax_cut_plan plan = {0};
+    bool cuts = false;
+    ax_status status = AX_OK;
+    for (int k = 0; k < count && status == AX_OK; ++k) {
+        const ax_export_type* type = find_type(paths[k]);
+        jobs[k] = (job){.design = design, .path = paths[k], .type = type, .options = &given};
+        if (!type) {
+            status = fail_unknown_ending(paths[k], error);
+            break;
+        }
+        jobs[k].state = given.state == AX_STATE_DEFAULT ? type->default_state : given.state;
+        status = check_state(design, type, jobs[k].state, error);
+        if (type->write_sheet)
+            jobs[k].plan = &plan, cuts = true;
+    }
+    if (status == AX_OK && cuts)
+        status = make_plan(design, &given, &plan, error);
+    if (status == AX_OK && !ax_progress_report(given.progress, "Writing", 1, NAN))
+        status = ax_fail(error, AX_CANCELLED, "Cancelled before writing.");
+    if (status == AX_OK)
+        status = write_jobs(count, jobs, error);
+    if (given.plan)
+        *given.plan = status == AX_OK ? plan : (ax_cut_plan){0};
+    if (!given.plan || status != AX_OK)
         ax_cut_plan_free(&plan);
+    ax_free(jobs);
     return status;
 }
 
 ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error)
 {
-    const ax_export_options given = options ? *options : (ax_export_options){0};
-    if (given.plan)
-        *given.plan = (ax_cut_plan){0};
-    const ax_export_type* type = find_type(path);
-    if (!type)
-        return fail_unknown_ending(path, error);
-    ax_state state = given.state == AX_STATE_DEFAULT ? type->default_state : given.state;
-    ax_status status = check_state(design, type, state, error);
-    if (status != AX_OK)
-        return status;
-    job j = {.design = design, .type = type, .state = state, .options = &given};
-    return type->write_sheet ? fabricate_and_write(&j, path, error) : write_one(&j, path, error);
+    return ax_export_files(design, 1, &path, options, error);
 }
 
 ax_status ax_export_plan(const ax_cut_plan* plan, const char* path, ax_error* error)
@@ -185,6 +238,5 @@ ax_status ax_export_plan(const ax_cut_plan* plan, const char* path, ax_error* er
         return fail_unknown_ending(path, error);
     if (!type->write_sheet)
         return ax_fail(error, AX_USAGE, "A %s (%s) cannot hold a cut plan.", type->name, type->ending);
-    job j = {.type = type, .state = AX_STATE_FLAT, .plan = plan};
-    return write_plan(&j, path, error);
+    return write_jobs(1, &(job){.path = path, .type = type, .state = AX_STATE_FLAT, .plan = plan}, error);
 }
