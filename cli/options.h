@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ax/base.h"
+#include "ax/mesh.h"
 
 #include <stdio.h>
 
@@ -44,6 +45,14 @@ typedef struct command_option {
     {                                                                                                                  \
         .name = "P.auxshell", .text = "the document", .kind = OPTION_TEXT, .operand = true, .required = true,          \
         .offset = offsetof(arguments, document)                                                                        \
+    }
+
+// How commands stand a mesh file up: an int of their arguments.
+#define OPTION_UP(arguments, member)                                                                                   \
+    {                                                                                                                  \
+        .name = "--up",                                                                                                \
+        .text = "the file's axis that points up: as its format says (y for glTF, z for OBJ), or as given",             \
+        .kind = OPTION_CHOICE, .choices = ax_up_words, .choice_count = 3, .offset = offsetof(arguments, member)        \
     }
 
 // Takes one row of a list: a name and what it means.

@@ -1,6 +1,6 @@
-// auxshell-read-mesh BYTES SECONDS FILE: parses a mesh file with assimp under limits on memory and processor time, and
-// writes its triangles to standard output as mesh/stream.h describes. What is wrong with the file goes to standard
-// error, as sentences.
+// auxshell-read-mesh BYTES SECONDS UP FILE: parses a mesh file with assimp under limits on memory and processor time, and
+// writes its triangles, turned so that z points up, to standard output as mesh/stream.h describes. UP is file, y or z. What is
+// wrong with the file goes to standard error, as sentences.
 #include "inspect.h"
 #include "mesh/stream.h"
 
@@ -68,12 +68,12 @@ static void inspect_file(const char* path)
     close(file);
 }
 
-// Nothing that changes geometry: polygons are divided after their corners were checked.
-static const struct aiScene* import(const char* path)
+// Nothing that changes geometry: polygons are divided after their corners were checked. The importer turns Collada's own up axis to y
+// if that counts.
+static const struct aiScene* import(const char* path, bool turn)
 {
     struct aiPropertyStore* properties = aiCreatePropertyStore();
-    aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION,
-                               1); // coordinates as in the file
+    aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, !turn);
     const struct aiScene* scene = aiImportFileExWithProperties(path, 0, NULL, properties);
     aiReleasePropertyStore(properties);
     if (scene)
@@ -127,6 +127,25 @@ static ax_vertex_order order_of(const struct aiScene* scene, const char* path)
     return ending && !strcasecmp(ending, ".stl") ? AX_VERTICES_REPEATED : AX_VERTICES_SPLIT;
 }
 
+static bool ends_in(const char* path, const char* ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+    return length >= tail && !strcasecmp(path + length - tail, ending);
+}
+
+// As the format says, or the file itself.
+static bool has_y_up(const struct aiScene* scene, const char* path)
+{
+    if (ends_in(path, ".gltf") || ends_in(path, ".glb") || ends_in(path, ".dae"))
+        return true;
+    for (unsigned k = 0; scene->mMetaData && k < scene->mMetaData->mNumProperties; ++k) {
+        const struct aiMetadataEntry* entry = &scene->mMetaData->mValues[k];
+        if (!strcmp(scene->mMetaData->mKeys[k].data, "UpAxis") && entry->mType == AI_INT32)
+            return *(const int32_t*)entry->mData == 1; // FBX: x, y, z
+    }
+    return false;
+}
+
 // Where a mesh stands in the scene; a mesh may stand in several places.
 typedef struct instance {
     const struct aiMesh* mesh;
@@ -138,6 +157,7 @@ typedef struct instances {
     size_t count, capacity;
     instance* items;
     uint64_t vertices, faces;
+    bool y_up;
 } instances;
 
 static void collect(instances* all, const struct aiScene* scene, const struct aiNode* node, struct aiMatrix4x4 place)
@@ -162,12 +182,15 @@ static void collect(instances* all, const struct aiScene* scene, const struct ai
         collect(all, scene, node->mChildren[i], place);
 }
 
-static void position(const instance* at, unsigned vertex, double out[3])
+static void position(const instances* all, size_t i, unsigned vertex, double out[3])
 {
+    const instance* at = &all->items[i];
     struct aiVector3D x = at->mesh->mVertices[vertex];
     if (at->moved)
         aiTransformVecByMatrix4(&x, &at->place);
-    out[0] = (double)x.x, out[1] = (double)x.y, out[2] = (double)x.z;
+    out[0] = (double)x.x;
+    out[1] = (double)(all->y_up ? -x.z : x.y);
+    out[2] = (double)(all->y_up ? x.y : x.z);
 }
 
 // The importer keeps seven digits: far from the origin they do not describe the shape any more.
@@ -177,7 +200,7 @@ static void check_precision(const instances* all)
     for (size_t i = 0; i < all->count; ++i)
         for (unsigned v = 0; v < all->items[i].mesh->mNumVertices; ++v) {
             double x[3];
-            position(&all->items[i], v, x);
+            position(all, i, v, x);
             for (int d = 0; d < 3; ++d) {
                 lo[d] = x[d] < lo[d] ? x[d] : lo[d];
                 hi[d] = x[d] > hi[d] ? x[d] : hi[d];
@@ -229,7 +252,7 @@ static void send(const instances* all, ax_vertex_order order)
     for (size_t i = 0; i < all->count; ++i)
         for (unsigned v = 0; v < all->items[i].mesh->mNumVertices; ++v) {
             double x[3];
-            position(&all->items[i], v, x);
+            position(all, i, v, x);
             put(&out, x, sizeof x);
         }
     int32_t first = 0;
@@ -250,12 +273,12 @@ static void send(const instances* all, ax_vertex_order order)
 
 int main(int argc, char** argv)
 {
-    if (argc != 4)
-        stop(ax_reader_failed, "usage: auxshell-read-mesh BYTES SECONDS FILE\n");
+    if (argc != 5)
+        stop(ax_reader_failed, "usage: auxshell-read-mesh BYTES SECONDS UP FILE\n");
     limit(argv[1], argv[2]);
-    const char* path = argv[3];
+    const char *up = argv[3], *path = argv[4];
     inspect_file(path);
-    const struct aiScene* scene = import(path);
+    const struct aiScene* scene = import(path, !strcmp(up, "file"));
     ax_vertex_order order = order_of(scene, path);
     bool polygons = false;
     for (unsigned m = 0; m < scene->mNumMeshes; ++m)
@@ -263,11 +286,13 @@ int main(int argc, char** argv)
     if (polygons)
         scene = aiApplyPostProcessing(scene, aiProcess_Triangulate);
 
-    instances all = {0};
+    instances all = {.y_up = !strcmp(up, "y")};
     struct aiMatrix4x4 identity;
     aiIdentityMatrix4(&identity);
     if (scene && scene->mRootNode)
         collect(&all, scene, scene->mRootNode, identity);
+    if (scene && !strcmp(up, "file"))
+        all.y_up = has_y_up(scene, path);
     if (!all.faces)
         stop(ax_reader_bad_input, "There are no faces in it. Export a surface of triangles or polygons.");
     if (all.faces > ax_stream_most_faces || all.vertices > ax_stream_most_vertices)

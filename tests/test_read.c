@@ -135,8 +135,8 @@ static void reading_stops_at_the_time_limit(void** state)
     ax_mesh mesh;
     ax_error error;
     double start = ax_seconds();
-    ax_read_limits limits = {.seconds = 0.02, .bytes = (size_t)6 << 30};
-    assert_int_equal(ax_mesh_read(path, &limits, &mesh, NULL, &error), AX_BAD_INPUT);
+    ax_read_options options = {.seconds = 0.02, .bytes = (size_t)6 << 30};
+    assert_int_equal(ax_mesh_read(path, &options, &mesh, NULL, &error), AX_BAD_INPUT);
     assert_non_null(strstr(error.message, "0.02 seconds"));
     assert_at_most(ax_seconds() - start, 5);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
@@ -151,8 +151,8 @@ static void reading_stops_at_the_memory_limit(void** state)
     write_large(path);
     ax_mesh mesh;
     ax_error error;
-    ax_read_limits limits = {.seconds = 60, .bytes = (size_t)128 << 20};
-    assert_int_equal(ax_mesh_read(path, &limits, &mesh, NULL, &error), AX_BAD_INPUT);
+    ax_read_options options = {.seconds = 60, .bytes = (size_t)128 << 20};
+    assert_int_equal(ax_mesh_read(path, &options, &mesh, NULL, &error), AX_BAD_INPUT);
     assert_non_null(strstr(error.message, "memory"));
     unlink(path);
 }

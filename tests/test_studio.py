@@ -531,6 +531,22 @@ class Surfaces(StudioCase):
         page.rest()
         self.assertLess(abs(page.events["linkage"]["triangles"] / 300 - 1), 0.1)
 
+    def test_a_surface_may_lie_on_its_side_and_be_drawn_in_millimetres(self):
+        studio = self.start()
+        page = self.page(studio)
+        lying = ""
+        for kind, *words in filter(None, map(str.split, (SURFACES / "spherical_cap.obj").read_text().splitlines())):
+            if kind == "v":
+                x, y, z = (1000 * float(word) for word in words)
+                words = map(str, (x, z, -y))
+            lying += " ".join((kind, *words)) + "\n"
+        token = studio.upload("lying.obj", lying.encode())
+        answer = self.agree(page.ask("check", upload=token))
+        self.assertEqual((answer["lies_on_side"], answer["by_gravity"], answer["likely_unit"]), (True, False, "mm"))
+        self.assertEqual(self.agree(page.ask("check", upload=token, up="y"))["by_gravity"], True)
+        self.disagree("usage", "file, y or z", page.ask("check", upload=token, up="x"))
+        self.disagree("usage", "mm, cm or m", page.ask("check", upload=token, unit="ft"))
+
     def test_what_is_no_surface_is_refused_in_words(self):
         studio = self.start()
         page = self.page(studio)

@@ -13,6 +13,7 @@
 typedef struct arguments {
     const char* target;
     bool json;
+    int up;
     const char* png;
 } arguments;
 
@@ -23,6 +24,7 @@ static const command_option options[] = {
      .operand = true,
      .required = true,
      .offset = offsetof(arguments, target)},
+    OPTION_UP(arguments, up),
     {.name = "--json", .text = "print every figure as JSON", .kind = OPTION_FLAG, .offset = offsetof(arguments, json)},
     {.name = "--png",
      .value = "DIR",
@@ -85,14 +87,14 @@ static json_t* screen_json(const ax_mesh* mesh, const ax_mesh_repairs* repairs, 
     json_t* scale = json_pack("{s:o, s:o, s:o, s:b, s:b}", "ratio", json_number(s->scale_ratio), "min",
                               json_number(s->scale_lo), "max", json_number(s->scale_hi), "fits", (int)s->scale_fits,
                               "needs_cones", (int)(isfinite(s->scale_ratio) && !s->scale_fits));
-    return json_pack("{s:s, s:s, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:o, s:b, s:b, s:o}", "verdict",
+    return json_pack("{s:s, s:s, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:b, s:o, s:b, s:b, s:o}", "verdict",
                      verdict_names[s->verdict], "words", s->words, "vertices", mesh->vertex_count, "faces",
                      mesh->face_count, "rim_vertices", s->rim_count, "rim_length", json_number(s->rim_length), "area",
                      json_number(s->area), "diagonal", json_number(s->diagonal), "bounds",
                      json_pack("[o, o]", json_numbers(s->bounds[0], 3), json_numbers(s->bounds[1], 3)), "curvature",
-                     curvature, "scale", scale, "height_field", (int)s->height_field, "gravity_direction",
-                     json_number(s->gravity_direction), "by_inflation", (int)s->by_inflation, "by_gravity",
-                     (int)s->by_gravity, "repairs", repairs_json(repairs));
+                     curvature, "scale", scale, "height_field", (int)s->height_field, "lies_on_side",
+                     (int)s->lies_on_side, "gravity_direction", json_number(s->gravity_direction), "by_inflation",
+                     (int)s->by_inflation, "by_gravity", (int)s->by_gravity, "repairs", repairs_json(repairs));
 }
 
 static ax_status draw(const arguments* a, const ax_mesh* mesh, const ax_screen* screen, ax_error* error)
@@ -116,9 +118,11 @@ static ax_status run(const void* given, ax_error* error)
     ax_mesh mesh = {0};
     ax_mesh_repairs repairs;
     ax_screen screen = {0};
+    ax_read_options read = ax_read_options_default();
+    read.up = (ax_up)a->up;
     ax_status status = a->png ? output_check_folder(a->png, error) : AX_OK;
     if (status == AX_OK)
-        status = ax_mesh_read(a->target, NULL, &mesh, &repairs, error);
+        status = ax_mesh_read(a->target, &read, &mesh, &repairs, error);
     if (status == AX_OK)
         status = ax_target_screen(&mesh, NULL, progress_reporter(), &screen, error);
     progress_end();

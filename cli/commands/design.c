@@ -25,6 +25,7 @@ typedef struct angle_choice {
 
 typedef struct arguments {
     const char *target, *out;
+    int up;
     ax_design_options design;
     flatten_choice flatten; // go into `design` when it runs
     angle_choice angle;
@@ -131,6 +132,7 @@ static const command_option options[] = {
      .choice_count = 3,
      .first = AX_MILLIMETRE,
      .offset = offsetof(arguments, design.unit)},
+    OPTION_UP(arguments, up),
     {.name = "--scale",
      .value = "LO,HI",
      .text = "band of scale factors: how far a triangle's neighbourhood may expand, within 1 to 2",
@@ -177,6 +179,17 @@ static const command_option options[] = {
      .offset = offsetof(arguments, angle)},
 };
 
+// The commonest mistake: a file drawn in another unit.
+static void doubt_unit(const ax_design* d)
+{
+    const double* size = d->report.deployed_bounds;
+    double length = fmax(fmax(size[0], size[1]), size[2]);
+    ax_unit likely = ax_unit_likely(length, d->unit);
+    if (likely != d->unit)
+        printf("            %.5g %s long: if the file is in %s, give --units %s\n", length, ax_unit_name(d->unit),
+               ax_unit_name(likely), ax_unit_name(likely));
+}
+
 static void print_steps(const arguments* a, const ax_mesh* mesh, const ax_design* d)
 {
     const ax_report* r = &d->report;
@@ -184,6 +197,7 @@ static void print_steps(const arguments* a, const ax_mesh* mesh, const ax_design
     char load[96];
     printf("Read        %s: %d vertices, %d faces; mended: ", a->target, mesh->vertex_count, mesh->face_count);
     repairs_print(&d->repairs, stdout);
+    doubt_unit(d);
     if (d->projected)
         printf("Projected   %.1f %% of the area moved, by %.4g %s at most; H is now %.4g or more, <= 0 on %.2g %%\n",
                100 * d->projection.moved_area_share, d->projection.largest_move, unit, d->projection.curvature_min,
@@ -217,12 +231,14 @@ static ax_status run(const void* given, ax_error* error)
     wanted.align_to_edge = a->angle.edge;
     wanted.angle = a->angle.degrees;
 
+    ax_read_options read = ax_read_options_default();
+    read.up = (ax_up)a->up;
     ax_mesh mesh = {0};
     ax_mesh_repairs repairs;
     ax_design design = {0};
     ax_status status = output_check(a->out, ".auxshell", error);
     if (status == AX_OK)
-        status = ax_mesh_read(a->target, NULL, &mesh, &repairs, error);
+        status = ax_mesh_read(a->target, &read, &mesh, &repairs, error);
     if (status == AX_OK)
         status = ax_design_from_target(&mesh, &wanted, progress_reporter(), &design, error);
     progress_end();

@@ -26,6 +26,8 @@ typedef struct ax_load {
 typedef enum ax_unit { AX_MILLIMETRE, AX_CENTIMETRE, AX_METRE } ax_unit;
 const char* ax_unit_name(ax_unit unit); // "mm", "cm", "m"
 double ax_unit_in_metres(ax_unit unit);
+// The unit in which a shell of this length is likely drawn: `unit` itself from 5 cm to 1 km, else the one that brings it there, if any.
+ax_unit ax_unit_likely(double length, ax_unit unit);
 bool ax_unit_parse(const char* name, ax_unit* unit);
 
 typedef struct ax_design_options {

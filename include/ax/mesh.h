@@ -23,25 +23,34 @@ typedef struct ax_mesh_repairs {
     bool turned_outward;  // all faces turned, so that normals point to the side on which the surface bulges
 } ax_mesh_repairs;
 
-// Limits for the separate process in which files are parsed.
-typedef struct ax_read_limits {
+// Which axis of a file points up. Meshes that were read have z up: where y points up, the file's (x, y, z) became (x, -z, y).
+typedef enum ax_up {
+    AX_UP_FILE, // as the format or the file says: y for glTF, what Collada and FBX name, else z
+    AX_UP_Y,
+    AX_UP_Z,
+} ax_up;
+extern const char* const ax_up_words[3]; // "file", "y", "z"
+
+// How to read, and limits for the separate process in which files are parsed.
+typedef struct ax_read_options {
     double seconds; // wall time, > 0
     size_t bytes;   // memory, > 0
-} ax_read_limits;
-ax_read_limits ax_read_limits_default(void); // 120 s, 6 GiB
+    ax_up up;
+} ax_read_options;
+ax_read_options ax_read_options_default(void); // 120 s, 6 GiB, as the file says
 
 // Reads a surface that can become a linkage: OBJ, STL, PLY, OFF and whatever else the importer knows, chosen by content
 // and ending. Coordinates have single precision, as the importer keeps them. The file is parsed by the program
-// auxshell-read-mesh, in a process of its own that is gone when this returns. NULL limits: the defaults. Welds, drops
+// auxshell-read-mesh, in a process of its own that is gone when this returns. NULL options: the defaults. Welds, drops
 // what has no area, orients, and validates: one part, manifold, orientable, one boundary loop. AX_BAD_INPUT names the
 // fault and its place (vertex, face or edge with coordinates) and how to mend it; AX_CANNOT_REALISE names a sound mesh
 // of a kind that is not handled (several boundary loops). `repairs` may be NULL. On failure `mesh` is empty.
-ax_status ax_mesh_read(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_mesh_repairs* repairs,
+ax_status ax_mesh_read(const char* path, const ax_read_options* options, ax_mesh* mesh, ax_mesh_repairs* repairs,
                        ax_error* error);
 
 // Reads whatever triangles a file has, as they stand: geometry to keep away from or to lie on, not to flatten. Only indices and
-// coordinates are checked. Limits and errors as above.
-ax_status ax_mesh_read_faces(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_error* error);
+// coordinates are checked. Options and errors as above.
+ax_status ax_mesh_read_faces(const char* path, const ax_read_options* options, ax_mesh* mesh, ax_error* error);
 
 // The same as ax_mesh_read from arrays in memory, for meshes that a program makes: welds, drops, orients, validates in place. Faults
 // are placed by the numbers of the arrays handed in. On failure the mesh is freed and empty.

@@ -37,9 +37,10 @@ typedef struct ax_screen {
     double curvature_nonpositive_share;                                   // share of area with H <= 0
     double curvature_worst_place[3]; // centroid of the largest part with H <= 0, or of the smallest H
     bool height_field;               // single valued over the xy-plane, so that gravity can deploy it
-    double gravity_direction;        // +1 or -1 along z: the side to which it bulges (an upright dome is hung: +1)
-    double scale_ratio;              // exp(u_max - u_min), the scale range a conformal map needs; NaN if not flattened
-    double scale_lo, scale_hi;       // the range of lambda when centred in the asked band
+    bool lies_on_side;         // no height field over the xy-plane, but one over the xz-plane: y may be its up axis
+    double gravity_direction;  // +1 or -1 along z: the side to which it bulges (an upright dome is hung: +1)
+    double scale_ratio;        // exp(u_max - u_min), the scale range a conformal map needs; NaN if not flattened
+    double scale_lo, scale_hi; // the range of lambda when centred in the asked band
     bool scale_fits;
     ax_verdict verdict;
     bool by_inflation, by_gravity; // how it deploys, as it is or after projection

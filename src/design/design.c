@@ -45,6 +45,19 @@ double ax_unit_in_metres(ax_unit unit)
     return metres[unit];
 }
 
+ax_unit ax_unit_likely(double length, ax_unit unit)
+{
+    static const ax_unit candidates[] = {AX_METRE, AX_MILLIMETRE, AX_CENTIMETRE};
+    const double least = 0.05, most = 1000;
+    double given = length * ax_unit_in_metres(unit);
+    for (size_t k = 0; k < sizeof candidates / sizeof *candidates && (given < least || given > most); ++k) {
+        double metres = length * ax_unit_in_metres(candidates[k]);
+        if (metres >= least && metres <= most)
+            return candidates[k];
+    }
+    return unit;
+}
+
 const char* ax_border_name(ax_border border)
 {
     return name_of(border, border_names);

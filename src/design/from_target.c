@@ -252,7 +252,9 @@ static ax_status accept_target(ax_design* design, const ax_design_options* optio
     if (options->load.kind == AX_LOAD_GRAVITY && !screen->by_gravity)
         return ax_fail(error, AX_CANNOT_REALISE,
                        "Gravity cannot deploy this surface: seen from above it is not a height field. Use --load "
-                       "inflation, or turn the target so that z is up.");
+                       "inflation, or %s.",
+                       screen->lies_on_side ? "give --up y if the y axis of its file points up"
+                                            : "turn the target so that z is up");
     design->scale_ratio = screen->scale_ratio;
 
     return AX_OK;

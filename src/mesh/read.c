@@ -16,9 +16,11 @@
 
 static const char program[] = "auxshell-read-mesh";
 
-ax_read_limits ax_read_limits_default(void)
+const char* const ax_up_words[3] = {[AX_UP_FILE] = "file", [AX_UP_Y] = "y", [AX_UP_Z] = "z"};
+
+ax_read_options ax_read_options_default(void)
 {
-    return (ax_read_limits){.seconds = 120, .bytes = (size_t)6 << 30};
+    return (ax_read_options){.seconds = 120, .bytes = (size_t)6 << 30, .up = AX_UP_FILE};
 }
 
 // What is wrong before anybody looks inside. Opening would hang on a pipe, so the kind comes first.
@@ -63,13 +65,13 @@ typedef struct parser {
     size_t word_count;
 } parser;
 
-static ax_status start(parser* p, const char* path, const ax_read_limits* limits, ax_error* error)
+static ax_status start(parser* p, const char* path, const ax_read_options* options, ax_error* error)
 {
     char executable[4096], bytes[32], seconds[32];
     find_parser(executable, sizeof executable);
-    snprintf(bytes, sizeof bytes, "%zu", limits->bytes);
-    snprintf(seconds, sizeof seconds, "%.0f", limits->seconds + 1);
-    char* arguments[] = {executable, bytes, seconds, (char*)path, NULL};
+    snprintf(bytes, sizeof bytes, "%zu", options->bytes);
+    snprintf(seconds, sizeof seconds, "%.0f", options->seconds + 1);
+    char* arguments[] = {executable, bytes, seconds, (char*)ax_up_words[options->up], (char*)path, NULL};
 
     int output[2], complaints[2];
     if (pipe2(output, O_CLOEXEC) != 0)
@@ -100,7 +102,7 @@ static ax_status start(parser* p, const char* path, const ax_read_limits* limits
     }
     p->output = output[0];
     p->complaints = complaints[0];
-    p->deadline = ax_seconds() + limits->seconds;
+    p->deadline = ax_seconds() + options->seconds;
     return AX_OK;
 }
 
@@ -186,14 +188,14 @@ static int finish(parser* p, bool received)
     return reaped == p->process ? ended : -1;
 }
 
-static ax_status explain(const parser* p, int ended, const char* path, const ax_read_limits* limits, ax_error* error)
+static ax_status explain(const parser* p, int ended, const char* path, const ax_read_options* options, ax_error* error)
 {
     if (p->late || (ended != -1 && WIFSIGNALED(ended) && WTERMSIG(ended) == SIGXCPU))
         return ax_fail(
             error, AX_BAD_INPUT,
             "%s could not be read within %g seconds, so reading was stopped. Reduce the number of faces, or export "
             "the mesh again in another format.",
-            path, limits->seconds);
+            path, options->seconds);
     if (ended != -1 && WIFEXITED(ended) && WEXITSTATUS(ended) == ax_reader_bad_input && p->word_count)
         return ax_fail(error, AX_BAD_INPUT, "%s: %s", path, p->words);
     if (ended != -1 && WIFSIGNALED(ended) && WTERMSIG(ended) == SIGINT)
@@ -202,37 +204,37 @@ static ax_status explain(const parser* p, int ended, const char* path, const ax_
         error, AX_BAD_INPUT,
         "%s: the importer broke down over this file, or needs more than %.3g GB of memory. The file is damaged or "
         "too large: export the mesh again, as OBJ, STL, PLY or OFF.%s%s",
-        path, (double)limits->bytes / (1 << 30), p->word_count ? " It said: " : "", p->words);
+        path, (double)options->bytes / (1 << 30), p->word_count ? " It said: " : "", p->words);
 }
 
-static ax_status parse(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_vertex_order* order,
+static ax_status parse(const char* path, const ax_read_options* options, ax_mesh* mesh, ax_vertex_order* order,
                        ax_error* error)
 {
     parser p = {0};
-    ax_status status = start(&p, path, limits, error);
+    ax_status status = start(&p, path, options, error);
     if (status != AX_OK)
         return status;
     bool received = ax_stream_receive(take, &p, mesh, order);
     int ended = finish(&p, received);
-    return received ? AX_OK : explain(&p, ended, path, limits, error);
+    return received ? AX_OK : explain(&p, ended, path, options, error);
 }
 
-static ax_status read_faces(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_vertex_order* order,
+static ax_status read_faces(const char* path, const ax_read_options* options, ax_mesh* mesh, ax_vertex_order* order,
                             ax_error* error)
 {
-    ax_read_limits standard = ax_read_limits_default();
-    limits = limits ? limits : &standard;
-    assert(limits->seconds > 0 && limits->bytes > 0);
+    ax_read_options standard = ax_read_options_default();
+    options = options ? options : &standard;
+    assert(options->seconds > 0 && options->bytes > 0);
     *mesh = (ax_mesh){0};
     ax_status status = check_file(path, error);
-    return status == AX_OK ? parse(path, limits, mesh, order, error) : status;
+    return status == AX_OK ? parse(path, options, mesh, order, error) : status;
 }
 
-ax_status ax_mesh_read(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_mesh_repairs* repairs,
+ax_status ax_mesh_read(const char* path, const ax_read_options* options, ax_mesh* mesh, ax_mesh_repairs* repairs,
                        ax_error* error)
 {
     ax_vertex_order order;
-    ax_status status = read_faces(path, limits, mesh, &order, error);
+    ax_status status = read_faces(path, options, mesh, &order, error);
     if (status != AX_OK)
         return status;
     ax_error inner;
@@ -254,10 +256,10 @@ static bool is_sound(const ax_mesh* mesh)
     return true;
 }
 
-ax_status ax_mesh_read_faces(const char* path, const ax_read_limits* limits, ax_mesh* mesh, ax_error* error)
+ax_status ax_mesh_read_faces(const char* path, const ax_read_options* options, ax_mesh* mesh, ax_error* error)
 {
     ax_vertex_order order;
-    ax_status status = read_faces(path, limits, mesh, &order, error);
+    ax_status status = read_faces(path, options, mesh, &order, error);
     if (status != AX_OK)
         return status;
     if (mesh->face_count == 0)

@@ -21,6 +21,10 @@
     }
 // How long operators settle that move the form: arguments have `int steps`.
 #define AX_STEPS(T) AX_INTEGER(T, steps, "Steps", 0, 100000, .doc = "Iterations; 0: until the form is at rest.")
+// How operators stand a mesh file up: arguments have `int up`.
+#define AX_UP(T)                                                                                                       \
+    AX_CHOICE(T, up, "Up axis", ax_up_words,                                                                           \
+              .doc = "The file's axis that points up: as its format says (y for glTF, z for OBJ), or as given.")
 #define AX_FLAG(T, member, title_, ...)                                                                                \
     {                                                                                                                  \
         .name = #member, .title = title_, .unit = "", .kind = AX_FIELD_FLAG, .offset = offsetof(T, member),            \

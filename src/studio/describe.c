@@ -423,11 +423,11 @@ json_t* describe_screen(const char* name, const ax_mesh* mesh, const ax_mesh_rep
 {
     static const char* const verdicts[] = {"deployable", "deployable_projected", "not_deployable"};
     json_t* out =
-        json_pack("{s:s, s:s, s:b, s:b, s:s, s:i, s:i, s:[o, o], s:o, s:o, s:o}", "verdict", verdicts[s->verdict],
-                  "words", s->words, "by_inflation", s->by_inflation, "by_gravity", s->by_gravity, "name", name,
-                  "vertices", mesh->vertex_count, "faces", mesh->face_count, "bounds", describe_point(s->bounds[0]),
-                  describe_point(s->bounds[1]), "area", describe_number(s->area), "diagonal",
-                  describe_number(s->diagonal), "rim_length", describe_number(s->rim_length));
+        json_pack("{s:s, s:s, s:b, s:b, s:b, s:s, s:i, s:i, s:[o, o], s:o, s:o, s:o}", "verdict", verdicts[s->verdict],
+                  "words", s->words, "lies_on_side", s->lies_on_side, "by_inflation", s->by_inflation, "by_gravity",
+                  s->by_gravity, "name", name, "vertices", mesh->vertex_count, "faces", mesh->face_count, "bounds",
+                  describe_point(s->bounds[0]), describe_point(s->bounds[1]), "area", describe_number(s->area),
+                  "diagonal", describe_number(s->diagonal), "rim_length", describe_number(s->rim_length));
     json_object_set_new(out, "repairs",
                         json_pack("{s:i, s:i, s:i, s:i, s:i, s:b}", "welded_vertices", r->welded_vertices,
                                   "degenerate_faces", r->degenerate_faces, "duplicate_faces", r->duplicate_faces,

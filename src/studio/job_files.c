@@ -53,13 +53,20 @@ static void send_surface(desk* d, const job* j, const ax_mesh* mesh, const ax_sc
 
 static ax_status check(desk* d, const job* j, json_t** result, ax_error* error)
 {
-    const char *upload = NULL, *path = NULL, *unit = NULL;
+    const char *upload = NULL, *path = NULL, *unit = "m", *up = ax_up_words[AX_UP_FILE];
     char *file = NULL, name[NAME_LENGTH + 1] = "";
     ax_target_options options = ax_target_options_default();
-    ax_status status = message_unpack(&j->message, error, "{s?s, s?s, s?s, s?[F, F]}", "upload", &upload, "path", &path,
-                                      "unit", &unit, "scale", &options.scale_lo, &options.scale_hi);
+    ax_status status = message_unpack(&j->message, error, "{s?s, s?s, s?s, s?s, s?[F, F]}", "upload", &upload, "path",
+                                      &path, "unit", &unit, "up", &up, "scale", &options.scale_lo, &options.scale_hi);
+    ax_read_options read = ax_read_options_default();
+    ax_unit document_unit = AX_METRE;
     if (status == AX_OK && !upload == !path)
         status = ax_fail(error, AX_USAGE, "check: name \"upload\" or \"path\".");
+    if (status == AX_OK && !ax_unit_parse(unit, &document_unit))
+        status = ax_fail(error, AX_USAGE, "check: \"unit\" must be mm, cm or m.");
+    while (status == AX_OK && strcmp(up, ax_up_words[read.up]) != 0)
+        if (++read.up > AX_UP_Z)
+            return ax_fail(error, AX_USAGE, "check: \"up\" must be file, y or z.");
     if (status == AX_OK)
         status = upload ? files_upload(hub_files(d->hub), upload, &file, name, error)
                         : files_within(hub_files(d->hub), path, &file, error);
@@ -71,7 +78,7 @@ static ax_status check(desk* d, const job* j, json_t** result, ax_error* error)
     ax_mesh_repairs repairs = {0};
     ax_screen screen = {0};
     const ax_progress progress = desk_progress(d);
-    status = ax_mesh_read(file, NULL, &mesh, &repairs, error);
+    status = ax_mesh_read(file, &read, &mesh, &repairs, error);
     if (status == AX_OK)
         status = ax_target_screen(&mesh, &options, &progress, &screen, error);
     if (status == AX_OK) {
@@ -81,6 +88,8 @@ static ax_status check(desk* d, const job* j, json_t** result, ax_error* error)
         send_surface(d, j, &mesh, &screen, origin);
         *result = describe_screen(name, &mesh, &repairs, &screen);
         json_object_set_new(*result, "origin", describe_point(origin));
+        json_object_set_new(*result, "likely_unit",
+                            json_string(ax_unit_name(ax_unit_likely(screen.diagonal, document_unit))));
         json_object_set_new(
             *result, "pictures",
             json_pack("{s:o, s:o}", "curvature", picture(d, &mesh, &screen, AX_SCREEN_CURVATURE, "curvature.png"),

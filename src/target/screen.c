@@ -46,17 +46,17 @@ static void say_place(ax_screen* screen, const double place[3])
     say(screen, "(%.*f, %.*f, %.*f)", decimals, place[0], decimals, place[1], decimals, place[2]);
 }
 
-// Gravity: every face looks up, or every face down, and the rim seen from above does not cross itself; then the surface
-// covers its plan once.
-static bool find_height_field(const ax_mesh* mesh, const ax_flattening* flattening, double* side)
+// Every face looks along an axis, or every face against it, and the rim seen that way does not cross itself; then the surface covers its
+// plan once. Gravity asks for it along z.
+static bool find_height_field(const ax_mesh* mesh, const ax_flattening* flattening, int axis, double* side)
 {
     double lowest = 1, highest = -1, sum = 0;
     for (int f = 0; f < mesh->face_count; ++f) {
         double normal[3];
         ax_face_normal(mesh, f, normal);
-        lowest = fmin(lowest, normal[2]);
-        highest = fmax(highest, normal[2]);
-        sum += normal[2] * ax_face_area(mesh, f);
+        lowest = fmin(lowest, normal[axis]);
+        highest = fmax(highest, normal[axis]);
+        sum += normal[axis] * ax_face_area(mesh, f);
     }
     *side = sum < 0 ? -1 : 1;
     if (lowest < -LEAN && highest > LEAN)
@@ -64,7 +64,8 @@ static bool find_height_field(const ax_mesh* mesh, const ax_flattening* flatteni
     int n = flattening->rim_count;
     double(*plan)[2] = ax_alloc((size_t)n, sizeof *plan);
     for (int k = 0; k < n; ++k)
-        memcpy(plan[k], mesh->positions[flattening->rim[k]], sizeof plan[k]);
+        for (int d = 0; d < 2; ++d)
+            plan[k][d] = mesh->positions[flattening->rim[k]][(axis + 1 + d) % 3];
     bool simple = ax_rim_is_simple(n, (const double(*)[2])plan);
     ax_free(plan);
     return simple;
@@ -134,7 +135,8 @@ static void explain_misfit(ax_screen* screen, const ax_mesh* mesh, const ax_targ
 static void say_loads(ax_screen* screen)
 {
     if (!screen->by_gravity)
-        say(screen, "by inflation; not by gravity, since it is no height field over the xy-plane");
+        say(screen, "by inflation; not by gravity, since it is no height field over the xy-plane%s",
+            screen->lies_on_side ? " (it is one over the xz-plane: if the file's y axis points up, give --up y)" : "");
     else if (screen->gravity_direction > 0)
         say(screen, "by inflation, and by gravity towards +z, hung upside down");
     else
@@ -203,7 +205,7 @@ static ax_status try_projection(ax_screen* screen, const ax_mesh* mesh, const ax
         ax_curvature_screen curvature = ax_curvature_measure(&projected);
         double side;
         screen->by_inflation = curvature.positive && fit.fits && fit.sound;
-        screen->by_gravity = find_height_field(&projected, &fit.flattening, &side) && screen->by_inflation;
+        screen->by_gravity = find_height_field(&projected, &fit.flattening, 2, &side) && screen->by_inflation;
         screen->verdict = screen->by_inflation ? AX_DEPLOYABLE_PROJECTED : AX_NOT_DEPLOYABLE;
         const ax_projection* p = &screen->projection;
         say(screen,
@@ -243,7 +245,9 @@ static void measure(ax_screen* screen, const ax_mesh* mesh, const ax_curvature_s
     screen->curvature_q95 = curvature->q95;
     screen->curvature_nonpositive_share = curvature->nonpositive_share;
     memcpy(screen->curvature_worst_place, curvature->worst_place, sizeof screen->curvature_worst_place);
-    screen->height_field = find_height_field(mesh, flat, &screen->gravity_direction);
+    screen->height_field = find_height_field(mesh, flat, 2, &screen->gravity_direction);
+    double side;
+    screen->lies_on_side = !screen->height_field && find_height_field(mesh, flat, 1, &side);
     screen->scale_ratio = fit->ratio;
     screen->scale_lo = fit->lo;
     screen->scale_hi = fit->hi;

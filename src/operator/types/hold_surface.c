@@ -3,6 +3,7 @@
 typedef struct arguments {
     ax_holding hold;
     const char* file;
+    int up;
 } arguments;
 
 static void defaults(void* given)
@@ -15,6 +16,7 @@ static const ax_field fields[] = {
     AX_HOLD_NAME(arguments),
     AX_HOLD_HINGES(arguments, .required = true),
     AX_TEXT(arguments, file, "File", .required = true, .doc = "Mesh of the surface: OBJ, STL, PLY, OFF or another."),
+    AX_UP(arguments),
     AX_HOLD_WEIGHT(arguments),
 };
 
@@ -22,8 +24,10 @@ static ax_status apply(const ax_operator_context* context, const void* given, ax
 {
     const arguments* a = given;
     char* path = ax_operator_path(context, a->file);
+    ax_read_options read = ax_read_options_default();
+    read.up = (ax_up)a->up;
     ax_mesh mesh;
-    ax_status status = ax_mesh_read_faces(path, NULL, &mesh, error);
+    ax_status status = ax_mesh_read_faces(path, &read, &mesh, error);
     ax_free(path);
     if (status != AX_OK)
         return status;

@@ -2,7 +2,7 @@
 
 typedef struct arguments {
     const char* file;
-    int triangles, unit, border;
+    int triangles, unit, up, border;
     double edge, scale_lo, scale_hi, mouth_min, angle;
     bool project;
 } arguments;
@@ -26,7 +26,7 @@ static void defaults(void* given)
 static const char* check(const void* given, int* field)
 {
     const arguments* a = given;
-    *field = 5;
+    *field = 6;
     return a->scale_lo < a->scale_hi ? NULL : "\"scale_lo\" must be less than \"scale_hi\".";
 }
 
@@ -37,6 +37,7 @@ static const ax_field fields[] = {
     AX_NUMBER(arguments, edge, "Panel edge", "length", 0, 1e9, .open = true, .fallback = "by the number of triangles",
               .doc = "Wanted mean edge of the panels."),
     AX_CHOICE(arguments, unit, "Unit", ax_unit_words, .doc = "Unit of the mesh and of every length in the recipe."),
+    AX_UP(arguments),
     AX_CHOICE(arguments, border, "Border panels", borders,
               .doc = "Equilateral with hinges on the boundary curve, released from being equilateral, or whole panels "
                      "inside."),
@@ -65,8 +66,10 @@ static ax_status design_for(const arguments* a, const char* path, const ax_progr
     options.project = a->project;
     options.unit = (ax_unit)a->unit;
     options.load.kind = AX_LOAD_NONE; // "gravity" and "inflation" deploy it
+    ax_read_options read = ax_read_options_default();
+    read.up = (ax_up)a->up;
     ax_mesh mesh;
-    ax_status status = ax_mesh_read(path, NULL, &mesh, NULL, error);
+    ax_status status = ax_mesh_read(path, &read, &mesh, NULL, error);
     if (status == AX_OK) {
         status = ax_design_from_target(&mesh, &options, progress, design, error);
         ax_mesh_free(&mesh);

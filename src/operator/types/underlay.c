@@ -2,6 +2,7 @@
 
 typedef struct arguments {
     const char *file, *name;
+    int up;
     double clearance, scale, at[3];
 } arguments;
 
@@ -18,6 +19,7 @@ static const ax_field fields[] = {
     AX_NUMBER(arguments, clearance, "Clearance", "length", 0, 1e9, .doc = "Distance that the shell must keep."),
     AX_NUMBER(arguments, scale, "Scale", "", 0, 1e9, .open = true,
               .doc = "Factor from the file's unit to the document's."),
+    AX_UP(arguments),
     AX_VECTOR(arguments, at, "Origin", "length", 3, .doc = "Where the file's origin lies."),
 };
 
@@ -32,8 +34,10 @@ static ax_status apply(const ax_operator_context* context, const void* given, ax
 {
     const arguments* a = given;
     char* path = ax_operator_path(context, a->file);
+    ax_read_options read = ax_read_options_default();
+    read.up = (ax_up)a->up;
     ax_mesh mesh;
-    ax_status status = ax_mesh_read_faces(path, NULL, &mesh, error);
+    ax_status status = ax_mesh_read_faces(path, &read, &mesh, error);
     if (status == AX_OK) {
         for (int v = 0; v < mesh.vertex_count; ++v)
             for (int d = 0; d < 3; ++d)

@@ -252,6 +252,8 @@ export interface Screen {
     };
     curvature: { min: number; q01: number; median: number; q95: number; nonpositive_share: number; worst: Point };
     height_field: boolean;
+    lies_on_side: boolean; // it would be one with y up
+    likely_unit: "mm" | "cm" | "m";
     scale: { ratio: number | null; lo: number | null; hi: number | null; fits: boolean };
     projection: { moved_area_share: number; largest_move: number; steps: number } | null;
     pictures: { curvature: string; scale: string | null };

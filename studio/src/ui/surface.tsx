@@ -15,6 +15,8 @@ interface Candidate {
     error: Problem | null;
     triangles: number;
     unit: LengthUnit;
+    unitChosen: boolean; // by hand: else the likely one is taken
+    up: "file" | "y" | "z";
 }
 export const candidate = signal<Candidate | null>(null);
 
@@ -31,7 +33,7 @@ export async function takeFile(file: File): Promise<void> {
             const token = await upload(file, file.name);
             if (await command("new", { recipe: [{ op: "start_curve", file: file.name }], files: { [file.name]: token }, name: file.name.replace(/\.\w+$/, "") })) page.value = "work";
         } else if (meshEndings.test(file.name)) {
-            candidate.value = { name: file.name, token: await upload(file, file.name), screen: null, error: null, triangles: 600, unit: "m" };
+            candidate.value = { name: file.name, token: await upload(file, file.name), screen: null, error: null, triangles: 600, unit: "m", unitChosen: false, up: "file" };
             dialog.value = "surface";
             await screen();
         } else refuse(`${file.name} is no mesh, outline, design or recipe. The studio reads OBJ, STL, PLY, GLB, SVG, DXF, .auxshell and recipe JSON.`);
@@ -45,8 +47,9 @@ async function screen(): Promise<void> {
     if (!c) return;
     candidate.value = { ...c, screen: null, error: null };
     try {
-        const answer = (await ask("check", { upload: c.token, unit: c.unit })) as unknown as Screen;
-        if (candidate.value?.token === c.token) candidate.value = { ...candidate.value, screen: answer };
+        const answer = (await ask("check", { upload: c.token, unit: c.unit, up: c.up })) as unknown as Screen;
+        const now = candidate.value;
+        if (now?.token === c.token) candidate.value = { ...now, screen: answer, unit: now.unitChosen ? now.unit : answer.likely_unit };
     } catch (error) {
         const p: Problem = error instanceof CommandError ? error.problem : { status: 1, word: "failed", message: String(error) };
         if (candidate.value?.token === c.token) candidate.value = { ...candidate.value, error: p };
@@ -64,8 +67,8 @@ export function SurfaceDialog() {
     const s = c.screen;
     const severity = s ? { deployable: "pass", deployable_projected: "warning", not_deployable: "failure" }[s.verdict] : "unknown";
     const design = async (project: boolean) => {
-        const { name, token, triangles, unit } = c;
-        const recipe: Record<string, unknown>[] = [{ op: "start_target", file: name, triangles, unit, ...(project ? { project: true } : {}) }];
+        const { name, token, triangles, unit, up } = c;
+        const recipe: Record<string, unknown>[] = [{ op: "start_target", file: name, triangles, unit, ...(up === "file" ? {} : { up }), ...(project ? { project: true } : {}) }];
         const load = s?.by_inflation ? "inflation" : s?.by_gravity ? "gravity" : null;
         if (load) recipe.push({ op: load });
         if (await command("new", { recipe, files: { [name]: token }, name: name.replace(/\.\w+$/, "") })) {
@@ -107,7 +110,11 @@ export function SurfaceDialog() {
                     <div class="form" style={{ marginTop: "8px" }}>
                         <NumberRow label="Panels" value={c.triangles} documentUnit="m" integer lo={24} hi={2000000} onChange={(triangles) => (candidate.value = { ...c, triangles })} />
                         <Row label="Unit">{(id) => <Choice id={id} value={c.unit} options={["mm", "cm", "m"].map((u) => ({ value: u as LengthUnit, title: u }))} onChange={(unit) => {
-                            candidate.value = { ...c, unit };
+                            candidate.value = { ...c, unit, unitChosen: true };
+                            void screen();
+                        }} />}</Row>
+                        <Row label="Up axis">{(id) => <Choice id={id} value={c.up} options={[{ value: "file", title: "As the file says" }, { value: "z", title: "z" }, { value: "y", title: "y" }]} onChange={(up) => {
+                            candidate.value = { ...c, up };
                             void screen();
                         }} />}</Row>
                     </div>
