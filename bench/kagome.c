@@ -115,8 +115,8 @@ kagome kagome_make(int n, bool dynamic)
             k.stiffness[3 * t + c] = 1 / (k.rest[3 * t + c] * k.rest[3 * t + c]);
         }
     }
-    k.hexagon = ax_alloc((size_t)(3 * n * n), sizeof *k.hexagon);
-    for (int r = -n + 1; r < n; ++r)
+    k.hexagon = ax_alloc(dynamic ? 0 : (size_t)(3 * n * n), sizeof *k.hexagon);
+    for (int r = -n + 1; r < n && !dynamic; ++r) // only static problems have circles
         for (int i = 1; i + 1 < row_points(n, r); ++i) {
             int down = r <= 0 ? i - 1 : i; // of the point below left; the one below right follows
             int* h = k.hexagon[k.hexagons++];

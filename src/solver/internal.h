@@ -10,7 +10,6 @@ enum { CHUNK = 64, POINTS_PER_TASK = 1024 }; // blocks of elements and points th
 // Constraints or loops of one number of points, AX_W to a block.
 typedef struct elements {
     int points_each, count, blocks;
-    int* points;   // count x points_each, as given
     int* slot;     // element -> slot; slot / AX_W is its block, slot % AX_W its lane
     int* index;    // per block: [point][lane], places in elimination order; spare lanes repeat the last element
     int rows_each; // rows that an element writes for the points to sum: one per point, of edges one for both ends
@@ -64,8 +63,10 @@ struct ax_solver {
     // everything below in elimination order
     int *order, *position;
     unsigned char* held; // points that are eliminated
-    ax_vec4 *x, *base, *velocity;
-    ax_vec4* kept; // during a time step the places before it, during a measurement the forces left
+    ax_vec4 *x, *base;
+    double (*velocity)[3]; // during a time step the places before it
+    ax_vec4* kept; // in accelerated time steps where inertia would take points, in a measurement the forces left; NULL
+                   // before the first such
     ax_vec4* dead; // sum of point forces and dead loads, NULL: none
     ax_vec4* row;  // what elements write for the points to sum
     int row_count, first_load_row;
@@ -85,6 +86,18 @@ struct ax_solver {
     bool tallying, measuring;
     ax_solver_counters counters;
 };
+
+// Where `index` has a point of the element in a slot.
+static inline size_t place_of(const elements* e, int slot, int point)
+{
+    return ((size_t)(slot / AX_W) * (size_t)e->points_each + (size_t)point) * AX_W + (size_t)(slot % AX_W);
+}
+
+// A point of an element, as given.
+static inline int point_of(const ax_solver* s, const elements* e, int element, int point)
+{
+    return s->order[e->index[place_of(e, e->slot[element], point)]];
+}
 
 static inline int task_count(const elements* e)
 {
@@ -110,6 +123,9 @@ static inline int live_lanes(const elements* e, int block)
 
 // Places of the points of a block, one lane each.
 void ax_gather(const ax_solver* s, const elements* e, int block, ax_lane3* x);
+
+// Makes room for `kept`.
+void ax_keep(ax_solver* s);
 
 // The local step: every element writes its rows, every point sums them. Afterwards x holds the right-hand side.
 void ax_local_step(ax_solver* s);

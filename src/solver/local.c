@@ -275,8 +275,8 @@ static double point_energy(const ax_solver* s, int v)
     double energy = s->dead ? -2 * s->load_factor * ax_dot3(s->dead[v], s->x[v]) : 0;
     double h = s->dynamics.time_step;
     for (int c = 0; s->dynamic && c < 3; ++c) {
-        double from = s->kept[v][c] + h * s->velocity[v][c] + h * h * s->dynamics.acceleration[c];
-        energy += s->dynamics.mass / (h * h) * (s->x[v][c] - from) * (s->x[v][c] - from);
+        double way = s->x[v][c] - s->kept[v][c];
+        energy += s->dynamics.mass / (h * h) * way * way;
     }
     return energy;
 }
@@ -335,8 +335,15 @@ void ax_local_step(ax_solver* s)
     ax_pool_run(s->pool, sum_points, s, point_task_count(s));
 }
 
+void ax_keep(ax_solver* s)
+{
+    if (!s->kept)
+        s->kept = ax_alloc_aligned((size_t)s->n, sizeof *s->kept);
+}
+
 void ax_measure(ax_solver* s)
 {
+    ax_keep(s);
     ax_sum_dead_loads(s);
     s->measuring = s->tallying = true;
     run_elements(s);

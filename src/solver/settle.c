@@ -104,8 +104,8 @@ static double typical_length(const ax_solver* s)
         if (pattern != AX_ROWS_EDGES && pattern != AX_ROWS_ARMS && pattern != AX_ROWS_CENTRED)
             continue;
         for (int c = 0; c < g->e.count; ++c) {
-            const int* p = g->e.points + (size_t)c * (size_t)g->e.points_each;
-            double d = ax_distance3(s->x[s->position[p[0]]], s->x[s->position[p[1]]]);
+            const int *first = g->e.index + place_of(&g->e, g->e.slot[c], 0), *second = first + AX_W;
+            double d = ax_distance3(s->x[*first], s->x[*second]);
             sum += d * d, ++count;
         }
     }

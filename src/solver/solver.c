@@ -23,9 +23,7 @@ ax_solver* ax_solver_make(int points, const double (*places)[3], ax_pool* pool)
     s->held = AX_NEW0(unsigned char, points);
     s->x = ax_alloc_aligned(n, sizeof *s->x);
     s->base = ax_alloc_aligned(n, sizeof *s->x);
-    s->kept = ax_alloc_aligned(n, sizeof *s->x);
-    s->velocity = ax_alloc_aligned(n, sizeof *s->x);
-    memset(s->velocity, 0, n * sizeof *s->x);
+    s->velocity = ax_calloc(n, sizeof *s->velocity);
     for (int v = 0; v < points; ++v)
         s->order[v] = s->position[v] = v;
     s->pattern_changed = s->values_changed = true;
@@ -33,21 +31,24 @@ ax_solver* ax_solver_make(int points, const double (*places)[3], ax_pool* pool)
     return s;
 }
 
-static elements make_elements(int points_each, int count, const int* points, int rows_each)
+static elements make_elements(const ax_solver* s, int points_each, int count, const int* points, int rows_each)
 {
     elements e = {.points_each = points_each, .count = count, .rows_each = rows_each};
     e.blocks = (count + AX_W - 1) / AX_W;
-    e.points = ax_copy(points, (size_t)count * (size_t)points_each, sizeof *points);
     e.slot = AX_NEW(int, count);
     e.index = AX_NEW(int, (size_t)e.blocks*(size_t)points_each* AX_W);
-    for (int c = 0; c < count; ++c)
-        e.slot[c] = c;
+    for (int slot = 0; slot < e.blocks * AX_W; ++slot) {
+        int c = slot < count ? slot : count - 1;
+        if (slot < count)
+            e.slot[c] = slot;
+        for (int k = 0; k < points_each; ++k)
+            e.index[place_of(&e, slot, k)] = s->position[points[(size_t)c * (size_t)points_each + (size_t)k]];
+    }
     return e;
 }
 
 static void free_elements(elements* e)
 {
-    ax_free(e->points);
     ax_free(e->slot);
     ax_free(e->index);
 }
@@ -89,7 +90,7 @@ int ax_solver_add(ax_solver* s, const ax_constraint_type* type, int points_each,
     s->parts = ax_realloc(s->parts, (size_t)s->group_count + 2, sizeof *s->parts);
     group* g = s->groups + s->group_count;
     *g = (group){.type = type, .place = place, .weight = weight, .rows = ax_row_count(type, points_each)};
-    g->e = make_elements(points_each, count, points, type->pattern == AX_ROWS_EDGES ? g->rows : points_each);
+    g->e = make_elements(s, points_each, count, points, type->pattern == AX_ROWS_EDGES ? g->rows : points_each);
     size_t blocks = (size_t)g->e.blocks, rows = (size_t)g->rows;
     g->parameter = ax_alloc_aligned(blocks * (size_t)(type->lanes ? type->lanes : 1), sizeof *g->parameter);
     g->dual = ax_calloc(blocks * rows, sizeof *g->dual); // the system gives such memory when it is first written
@@ -198,7 +199,10 @@ void ax_solver_measure_load(ax_solver* s, int k, const double (*places)[3])
         load_class* class = s->loads[k].classes + c;
         const elements* e = &class->e;
         for (int loop = 0; loop < e->count; ++loop) {
-            double area = loop_area(s, places, e->points_each, e->points + (size_t)loop * (size_t)e->points_each);
+            int points[AX_MOST_POINTS];
+            for (int p = 0; p < e->points_each; ++p)
+                points[p] = point_of(s, e, loop, p);
+            double area = loop_area(s, places, e->points_each, points);
             class->area[e->slot[loop] / AX_W][e->slot[loop] % AX_W] = area;
         }
         for (int l = live_lanes(e, e->blocks - 1); l < AX_W; ++l)
@@ -239,7 +243,7 @@ int ax_solver_add_load(ax_solver* s, const ax_load_type* type, int loops, const 
         if (!count)
             continue;
         load_class* class = f->classes + f->class_count++;
-        class->e = make_elements(size, count, same, size);
+        class->e = make_elements(s, size, count, same, size);
         class->area = ax_alloc_aligned((size_t) class->e.blocks, sizeof *class->area);
     }
     ax_free(same);
@@ -395,7 +399,7 @@ static ax_sparse assemble(ax_solver* s, const unsigned char* held)
             for (int a = 0; a < n; ++a)
                 for (int b = 0; b <= a; ++b)
                     if (product[a * n + b] != 0) {
-                        int i = g->e.points[c * n + a], j = g->e.points[c * n + b];
+                        int i = point_of(s, &g->e, c, a), j = point_of(s, &g->e, c, b);
                         double value = g->weight * product[a * n + b];
                         if (held[i] && held[j])
                             continue;
@@ -418,8 +422,20 @@ static unsigned char* find_held(const ax_solver* s)
     unsigned char* held = AX_NEW0(unsigned char, s->n);
     for (int k = 0; k < s->group_count; ++k)
         for (int c = 0; s->groups[k].type->eliminated && c < s->groups[k].e.count; ++c)
-            held[s->groups[k].e.points[c]] = 1;
+            held[point_of(s, &s->groups[k].e, c, 0)] = 1;
     return held;
+}
+
+// All elements, constraints first: NULL after the last.
+static elements* elements_at(ax_solver* s, int k)
+{
+    if (k < s->group_count)
+        return &s->groups[k].e;
+    k -= s->group_count;
+    for (int f = 0; f < s->load_count; k -= s->loads[f++].class_count)
+        if (k < s->loads[f].class_count)
+            return &s->loads[f].classes[k].e;
+    return NULL;
 }
 
 // Moves all per-point state to a new elimination order.
@@ -428,17 +444,21 @@ static void reorder(ax_solver* s, const int* order, const unsigned char* held)
     int* position = AX_NEW(int, s->n);
     for (int k = 0; k < s->n; ++k)
         position[order[k]] = k;
-    ax_vec4** states[] = {&s->x, &s->velocity};
-    for (int k = 0; k < 2; ++k) {
-        ax_vec4 *from = *states[k],
-                *to = ax_alloc_aligned(k == 0 ? ax_panels_rows(s->panels) : (size_t)s->n, sizeof *to);
-        for (int v = 0; v < s->n; ++v)
-            memcpy(to[position[v]], from[s->position[v]], sizeof *to);
-        ax_free(from);
-        *states[k] = to;
-    }
-    for (int v = 0; v < s->n; ++v)
+    ax_vec4* x = ax_alloc_aligned(ax_panels_rows(s->panels), sizeof *x);
+    double(*velocity)[3] = ax_alloc((size_t)s->n, sizeof *velocity);
+    for (int v = 0; v < s->n; ++v) {
+        memcpy(x[position[v]], s->x[s->position[v]], sizeof *x);
+        memcpy(velocity[position[v]], s->velocity[s->position[v]], sizeof *velocity);
         s->held[position[v]] = held[v];
+    }
+    ax_free(s->x);
+    ax_free(s->velocity);
+    s->x = x;
+    s->velocity = velocity;
+    elements* e;
+    for (int k = 0; (e = elements_at(s, k)); ++k)
+        for (size_t i = 0; i < (size_t)e->blocks * (size_t)e->points_each * AX_W; ++i)
+            e->index[i] = position[s->order[e->index[i]]];
     memcpy(s->order, order, (size_t)s->n * sizeof *order);
     ax_free(s->position);
     s->position = position;
@@ -453,24 +473,25 @@ static int* sort_elements(const ax_solver* s, elements* e)
     for (int c = 0; c < e->count; ++c) {
         first[c] = s->n;
         for (int k = 0; k < n; ++k) {
-            int at = s->position[e->points[c * n + k]];
+            int at = e->index[place_of(e, e->slot[c], k)];
             first[c] = at < first[c] ? at : first[c];
         }
     }
     ax_bucket_sort(e->count, s->n, first, NULL, start, sorted);
-    int* was = AX_NEW(int, e->blocks* AX_W);
+    ax_free(first);
+    ax_free(start);
+    int *was = AX_NEW(int, e->blocks*AX_W), *index = AX_NEW(int, (size_t)e->blocks*(size_t)n*AX_W);
     for (int slot = 0; slot < e->blocks * AX_W; ++slot) {
         int c = sorted[slot < e->count ? slot : e->count - 1];
         was[slot] = e->slot[c];
         for (int k = 0; k < n; ++k)
-            e->index[((size_t)(slot / AX_W) * (size_t)n + (size_t)k) * AX_W + (size_t)(slot % AX_W)] =
-                s->position[e->points[c * n + k]];
+            index[place_of(e, slot, k)] = e->index[place_of(e, e->slot[c], k)];
     }
     for (int slot = 0; slot < e->count; ++slot)
         e->slot[sorted[slot]] = slot;
-    ax_free(first);
-    ax_free(start);
     ax_free(sorted);
+    ax_free(e->index);
+    e->index = index;
     return was;
 }
 
@@ -567,7 +588,7 @@ static void list_incidence(ax_solver* s)
         for (int k = 0; (e = writer(s, k, &edges)); ++k)
             for (int slot = 0; slot < e->count; ++slot)
                 for (int p = 0; p < e->points_each; ++p) {
-                    int at = e->index[(slot / AX_W * e->points_each + p) * AX_W + slot % AX_W];
+                    int at = e->index[place_of(e, slot, p)];
                     int row = e->first_row + slot * e->rows_each + (edges ? p / 2 : p);
                     if (pass)
                         s->incident[s->incident_start[at + 1]++] = row << 1 | (edges && p % 2 == 0);
@@ -582,30 +603,42 @@ static void list_incidence(ax_solver* s)
     }
 }
 
+static void trim(const ax_solver* s)
+{
+    if (s->rows_changed && s->n >= LEAST_TRIMMED)
+        ax_trim_memory();
+}
+
+// The order of elimination, and all that follows from it.
+static void analyse(ax_solver* s, const ax_sparse* matrix, const unsigned char* held)
+{
+    int* order = AX_NEW(int, s->n);
+    ax_order_by_place(matrix, (const double(*)[3])s->start, s->pool, order);
+    ax_panels_free(s->panels);
+    s->panels = ax_panels_analyse(matrix, order);
+    ax_free(order);
+    s->counters.factor_entries = ax_panels_entries(s->panels);
+    s->counters.bytes_per_solve = ax_panels_bytes(s->panels);
+    reorder(s, ax_panels_order(s->panels), held);
+    s->rows_changed = true;
+    s->pattern_changed = false;
+    ++s->counters.analyses;
+}
+
 static bool factorise(ax_solver* s)
 {
     unsigned char* held = find_held(s);
     ax_sparse matrix = assemble(s, held);
-    if (s->pattern_changed) {
-        int* order = AX_NEW(int, s->n);
-        ax_order_by_place(&matrix, (const double(*)[3])s->start, s->pool, order);
-        ax_panels_free(s->panels);
-        s->panels = ax_panels_analyse(&matrix, order);
-        s->counters.factor_entries = ax_panels_entries(s->panels);
-        s->counters.bytes_per_solve = ax_panels_bytes(s->panels);
-        reorder(s, ax_panels_order(s->panels), held);
-        s->rows_changed = true;
-        s->pattern_changed = false;
-        ++s->counters.analyses;
-        ax_free(order);
-    }
+    if (s->pattern_changed)
+        analyse(s, &matrix, held);
+    ax_free(held);
+    trim(s);
     double start = ax_seconds();
     bool sound = ax_panels_factor(s->panels, &matrix, s->pool);
     s->counters.seconds_factorise += ax_seconds() - start;
     ++s->counters.factorisations;
     s->values_changed = !sound;
     ax_sparse_free(&matrix);
-    ax_free(held);
     return sound;
 }
 
@@ -619,8 +652,7 @@ bool ax_solver_prepare(ax_solver* s)
     if (s->rows_changed) {
         sort_all(s);
         list_incidence(s);
-        if (s->n >= LEAST_TRIMMED)
-            ax_trim_memory();
+        trim(s);
         s->rows_changed = false;
     }
     s->counters.seconds_prepare += ax_seconds() - start;
@@ -741,35 +773,41 @@ bool ax_solver_step(ax_solver* s, int iterations)
         return false;
     assert(s->dynamic);
     double h = s->dynamics.time_step, m = mass_term(s);
-    for (int v = 0; v < s->n; ++v)
-        for (int c = 0; c < 4; ++c) {
-            double a = c < 3 ? s->dynamics.acceleration[c] : 0;
-            s->kept[v][c] = s->x[v][c]; // the place before the step, needed for the velocity
-            s->x[v][c] = s->x[v][c] + h * s->velocity[v][c] + h * h * a;
+    if (s->anderson)
+        ax_keep(s);
+    for (int v = 0; v < s->n; ++v) {
+        for (int c = 0; c < 3; ++c) {
+            double before = s->x[v][c];
+            s->x[v][c] = before + h * s->velocity[v][c] + h * h * s->dynamics.acceleration[c];
+            s->velocity[v][c] = before;
             s->base[v][c] = m * s->x[v][c];
         }
+        s->base[v][3] = 0;
+        if (s->anderson)
+            memcpy(s->kept[v], s->x[v], sizeof *s->kept);
+    }
     ax_pin(s);
     add_to_base(s);
     s->changed = true; // every step has an energy of its own
     for (int k = 0; k < iterations; ++k)
         iterate(s);
     for (int v = 0; v < s->n; ++v)
-        for (int c = 0; c < 4; ++c)
-            s->velocity[v][c] = s->dynamics.damping * (s->x[v][c] - s->kept[v][c]) / h;
+        for (int c = 0; c < 3; ++c)
+            s->velocity[v][c] = s->dynamics.damping * (s->x[v][c] - s->velocity[v][c]) / h;
     return true;
 }
 
 static size_t element_bytes(const elements* e)
 {
-    return (size_t)e->blocks * AX_W * (size_t)e->points_each * sizeof(int) +
-           (size_t)e->count * ((size_t)e->points_each + 1) * sizeof(int);
+    return ((size_t)e->blocks * AX_W * (size_t)e->points_each + (size_t)e->count) * sizeof(int);
 }
 
 ax_solver_counters ax_solver_count(const ax_solver* s)
 {
     ax_solver_counters counters = s->counters;
-    counters.bytes = (size_t)s->n * (4 * sizeof(ax_vec4) + 4 * sizeof(double) + 3 * sizeof(int) + 1) +
+    counters.bytes = (size_t)s->n * (2 * sizeof(ax_vec4) + 7 * sizeof(double) + 3 * sizeof(int) + 1) +
                      (size_t)s->row_count * sizeof *s->row;
+    counters.bytes += s->kept ? (size_t)s->n * sizeof *s->kept : 0;
     counters.bytes += s->anderson ? ax_anderson_bytes(s->anderson) : 0;
     counters.bytes += s->dead ? (size_t)s->n * sizeof *s->dead : 0;
     counters.bytes += s->point_force ? (size_t)s->n * sizeof *s->point_force : 0;
