@@ -293,8 +293,8 @@ static void factor_part(void* context, int part)
 
 bool ax_panels_factor(ax_panels* s, const ax_sparse* matrix, ax_pool* pool)
 {
-    int n = s->n, *position = AX_NEW(int, n), *start = AX_NEW0(int, n + 2), *row = AX_NEW(int, matrix->start[n]);
-    double *value = AX_NEW(double, matrix->start[n]), *diagonal = AX_NEW0(double, n);
+    int n = s->n, *position = AX_NEW(int, n), *start = AX_NEW0(int, n + 2), *row = NULL;
+    double *value = NULL, *diagonal = AX_NEW0(double, n);
     for (int k = 0; k < n; ++k)
         position[s->order[k]] = k;
     for (int pass = 0; pass < 2; ++pass) {
@@ -309,8 +309,12 @@ bool ax_panels_factor(ax_panels* s, const ax_sparse* matrix, ax_pool* pool)
                 } else
                     ++start[early + 2];
             }
-        for (int k = 0; k <= n && pass == 0; ++k)
+        if (pass)
+            break;
+        for (int k = 0; k <= n; ++k)
             start[k + 1] += start[k];
+        row = AX_NEW(int, start[n + 1]);
+        value = AX_NEW(double, start[n + 1]);
     }
     factoring f = {.panels = s,
                    .pool = pool,

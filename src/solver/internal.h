@@ -56,7 +56,7 @@ struct ax_solver {
     load* loads;
     ax_pool* pool;
     // per point as given
-    double (*start)[3];       // rest places, for the elimination order
+    float (*start)[3];        // rest places, for the elimination order
     double (*point_force)[3]; // NULL: none
     double* stiffness;        // diagonal of the matrix
     ax_sparse held_matrix;    // entries between free points and held ones

@@ -16,7 +16,7 @@ ax_solver* ax_solver_make(int points, const double (*places)[3], ax_pool* pool)
     s->n = points;
     s->pool = pool;
     s->load_factor = 1;
-    s->start = ax_copy(places, n, sizeof *s->start);
+    s->start = ax_alloc(n, sizeof *s->start);
     s->stiffness = AX_NEW0(double, points);
     s->order = AX_NEW(int, points);
     s->position = AX_NEW(int, points);
@@ -24,8 +24,11 @@ ax_solver* ax_solver_make(int points, const double (*places)[3], ax_pool* pool)
     s->x = ax_alloc_aligned(n, sizeof *s->x);
     s->base = ax_alloc_aligned(n, sizeof *s->x);
     s->velocity = ax_calloc(n, sizeof *s->velocity);
-    for (int v = 0; v < points; ++v)
+    for (int v = 0; v < points; ++v) {
         s->order[v] = s->position[v] = v;
+        for (int c = 0; c < 3; ++c)
+            s->start[v][c] = (float)places[v][c];
+    }
     s->pattern_changed = s->values_changed = true;
     ax_solver_set_places(s, places);
     return s;
@@ -613,7 +616,12 @@ static void trim(const ax_solver* s)
 static void analyse(ax_solver* s, const ax_sparse* matrix, const unsigned char* held)
 {
     int* order = AX_NEW(int, s->n);
-    ax_order_by_place(matrix, (const double(*)[3])s->start, s->pool, order);
+    double(*place)[3] = ax_alloc((size_t)s->n, sizeof *place);
+    for (int v = 0; v < s->n; ++v)
+        for (int c = 0; c < 3; ++c)
+            place[v][c] = s->start[v][c];
+    ax_order_by_place(matrix, (const double(*)[3])place, s->pool, order);
+    ax_free(place);
     ax_panels_free(s->panels);
     s->panels = ax_panels_analyse(matrix, order);
     ax_free(order);
@@ -805,8 +813,9 @@ static size_t element_bytes(const elements* e)
 ax_solver_counters ax_solver_count(const ax_solver* s)
 {
     ax_solver_counters counters = s->counters;
-    counters.bytes = (size_t)s->n * (2 * sizeof(ax_vec4) + 7 * sizeof(double) + 3 * sizeof(int) + 1) +
-                     (size_t)s->row_count * sizeof *s->row;
+    counters.bytes =
+        (size_t)s->n * (2 * sizeof(ax_vec4) + 4 * sizeof(double) + 3 * sizeof(float) + 3 * sizeof(int) + 1) +
+        (size_t)s->row_count * sizeof *s->row;
     counters.bytes += s->kept ? (size_t)s->n * sizeof *s->kept : 0;
     counters.bytes += s->anderson ? ax_anderson_bytes(s->anderson) : 0;
     counters.bytes += s->dead ? (size_t)s->n * sizeof *s->dead : 0;
