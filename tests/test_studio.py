@@ -229,6 +229,29 @@ class Protocol(StudioCase):
         self.assertLess(height[0], 0.1)
         self.assertGreater(height[-1], 0.9 * (max(page.state["simulated"][2::3]) - min(page.state["simulated"][2::3])))
 
+    def test_collisions_name_panels_that_do_collide(self):
+        page = self.page(self.start(steps=[dict(DOME[0], triangles=200), {"op": "fill", "value": 2},
+                                           dict(STROKE, value=1), {"op": "inflation"}]))
+        page.rest()
+        report = page.events["report"]
+        check = next(check for check in report["checks"] if check["key"] == "overlap")
+        flat, triangles = page.state["flat"], page.state["triangles"]
+
+        def corners(t):
+            return [complex(flat[2 * h], flat[2 * h + 1]) for h in triangles[3 * t:3 * t + 3]]
+
+        def apart(a, b):  # an edge of one has the other beyond it
+            return any(all(((b[k] - b[k - 1]).conjugate() * (p - b[k - 1])).imag < 1e-9 for p in a) for k in range(3))
+        pair = corners(check["triangle"]), corners(check["other"])
+        self.assertFalse(apart(*pair) or apart(*reversed(pair)), check)
+        self.assertEqual((check["severity"], report["verdict"]["word"]), ("failure", "No"))
+        plan = self.agree(page.ask("export", ending=".svg"))["plan"]
+        self.assertEqual(len(plan["collisions"]), min(plan["clashes"], 100))
+        flat_ones = [[corners(t) for t in c["panels"]] for c in plan["collisions"] if c["when"] == "flat"]
+        self.assertTrue(flat_ones)
+        for a, b in flat_ones:
+            self.assertFalse(apart(a, b) or apart(b, a))
+
     def test_variants_are_kept_compared_and_taken(self):
         page = self.page(self.start())
         self.agree(page.ask("variant", name="low"))

@@ -192,8 +192,10 @@ int ax_form_underlays(const ax_form* form, const char*** names, const ax_mesh** 
 typedef enum ax_severity { AX_SEVERITY_NOTE, AX_SEVERITY_WARNING, AX_SEVERITY_FAILURE } ax_severity;
 typedef struct ax_finding {
     ax_severity severity;
-    const char* kind;    // "mouth", "overlap", "slack", "tight", "overhang", "rim", "constraint", "scale", "clearance"
+    const char* kind;    // "mouth", "overlap", "slack", "tight", "overhang", "held", "scale",
+                         // "clearance", "folded", "flipped", "unsettled"
     int triangle, hinge; // where; -1 if nowhere in particular
+    int other;           // second panel of a pair, else -1
     double value, limit;
     char text[160]; // a sentence for people, with figures and units
 } ax_finding;
@@ -204,6 +206,7 @@ typedef struct ax_held_figure {
     const char* kind;
     int count;
     double residual;   // largest distance of a hinge from what holds it, document units; fairness: third differences
+    int hinge;         // whose that is
     double multiplier; // largest |u| over L: far above 1 tells of a conflict
 } ax_held_figure;
 

@@ -76,7 +76,7 @@ static void panel_normal(const ax_form* f, int t, const double (*x)[3], double n
     ax_cross(a, b, normal);
 }
 
-int ax_form_folds(const ax_form* f, const double (*x)[3])
+int ax_form_folds(const ax_form* f, const double (*x)[3], int first[2])
 {
     int folds = 0;
     for (int h = 0; h < f->lattice.linkage.hinge_count; ++h) {
@@ -85,7 +85,8 @@ int ax_form_folds(const ax_form* f, const double (*x)[3])
         double a[3], b[3];
         panel_normal(f, f->holder[h][0], x, a);
         panel_normal(f, f->holder[h][1], x, b);
-        folds += ax_dot3(a, b) < 0;
+        if (ax_dot3(a, b) < 0 && folds++ == 0 && first)
+            memcpy(first, f->holder[h], sizeof f->holder[h]);
     }
     return folds;
 }
@@ -156,8 +157,16 @@ ax_form_view ax_form_look(ax_form* f)
 
 // ---- what holds -----------------------------------------------------------------------------------------------------------------
 
+// A residual, the largest of distances, and the hinge that has it.
+static void take_further(double distance, int hinge, double* most, int* worst)
+{
+    if (distance > *most || *worst < 0)
+        *worst = hinge;
+    *most = fmax(*most, distance);
+}
+
 // Largest distance of hinges from the plane, line or circle that fits them best: the constraint's own projection.
-static double fit_distance(const char* name, int count, const int* hinges, const double (*x)[3])
+static double fit_distance(const char* name, int count, const int* hinges, const double (*x)[3], int* worst)
 {
     const ax_constraint_type* type = ax_constraint_find(name);
     ax_lane3 *y = ax_alloc_aligned((size_t)count, sizeof *y), *p = ax_alloc_aligned((size_t)count, sizeof *p);
@@ -174,7 +183,7 @@ static double fit_distance(const char* name, int count, const int* hinges, const
         double d[3];
         for (int c = 0; c < 3; ++c)
             d[c] = y[i][c][0] - p[i][c][0];
-        most = fmax(most, ax_norm3(d));
+        take_further(ax_norm3(d), hinges[i], &most, worst);
     }
     ax_free(y);
     ax_free(p);
@@ -189,20 +198,20 @@ static double plane_distance(const ax_form_constraint* c, const double x[3])
     return length > 0 ? ax_dot3(d, c->direction) / length : d[2];
 }
 
-static double constraint_residual(const ax_form* f, int k, const double (*x)[3])
+static double constraint_residual(const ax_form* f, int k, const double (*x)[3], int* worst)
 {
     const ax_form_constraint* c = f->held + k;
     double most = 0;
     switch (c->kind) {
     case AX_HELD_PLANE:
-        return fit_distance("plane", c->count, c->hinges, x);
+        return fit_distance("plane", c->count, c->hinges, x, worst);
     case AX_HELD_LINE:
-        return fit_distance("line", c->count, c->hinges, x);
+        return fit_distance("line", c->count, c->hinges, x, worst);
     case AX_HELD_CIRCLE:
-        return fit_distance("circle", c->count, c->hinges, x);
+        return fit_distance("circle", c->count, c->hinges, x, worst);
     case AX_HELD_PLANE_GIVEN:
         for (int i = 0; i < c->count; ++i)
-            most = fmax(most, fabs(plane_distance(c, x[c->hinges[i]])));
+            take_further(fabs(plane_distance(c, x[c->hinges[i]])), c->hinges[i], &most, worst);
         return most;
     case AX_HELD_CURVE:
     case AX_HELD_SURFACE: {
@@ -216,7 +225,7 @@ static double constraint_residual(const ax_form* f, int k, const double (*x)[3])
                 ax_closest_point at = ax_closest_find(surface, x[c->hinges[i]], -1);
                 memcpy(on, at.point, sizeof on);
             }
-            most = fmax(most, ax_distance3(on, x[c->hinges[i]]));
+            take_further(ax_distance3(on, x[c->hinges[i]]), c->hinges[i], &most, worst);
         }
         ax_curve_free(curve);
         ax_closest_free(surface);
@@ -224,7 +233,7 @@ static double constraint_residual(const ax_form* f, int k, const double (*x)[3])
     }
     case AX_HELD_FIXED:
         for (int i = 0; i < c->count; ++i)
-            most = fmax(most, ax_distance3(c->places[i], x[c->hinges[i]]));
+            take_further(ax_distance3(c->places[i], x[c->hinges[i]]), c->hinges[i], &most, worst);
         return most;
     case AX_HELD_MIRROR:
         for (int i = 0; i + 1 < c->count; i += 2) {
@@ -232,7 +241,7 @@ static double constraint_residual(const ax_form* f, int k, const double (*x)[3])
             double length = ax_norm3(c->direction), height = plane_distance(c, a), image[3];
             for (int d = 0; d < 3; ++d)
                 image[d] = a[d] - 2 * height * (length > 0 ? c->direction[d] / length : d == 2);
-            most = fmax(most, ax_distance3(image, x[c->hinges[i + 1]]));
+            take_further(ax_distance3(image, x[c->hinges[i + 1]]), c->hinges[i + 1], &most, worst);
         }
         return most;
     case AX_HELD_ROTATION: {
@@ -248,7 +257,7 @@ static double constraint_residual(const ax_form* f, int k, const double (*x)[3])
             double along = ax_dot3(a, w);
             for (int d = 0; d < 3; ++d) // Rodrigues
                 image[d] = c->point[d] + cosine * a[d] + sine * across[d] + (1 - cosine) * along * w[d];
-            most = fmax(most, ax_distance3(image, x[c->hinges[next]]));
+            take_further(ax_distance3(image, x[c->hinges[next]]), c->hinges[next], &most, worst);
         }
         return most;
     }
@@ -262,7 +271,7 @@ static double constraint_residual(const ax_form* f, int k, const double (*x)[3])
                 double d[3];
                 for (int q = 0; q < 3; ++q)
                     d[q] = x[h[0]][q] - 3 * x[h[1]][q] + 3 * x[h[2]][q] - x[h[3]][q];
-                most = fmax(most, ax_norm3(d));
+                take_further(ax_norm3(d), h[1], &most, worst);
             }
         ax_free(wanted);
         return most;
@@ -271,7 +280,7 @@ static double constraint_residual(const ax_form* f, int k, const double (*x)[3])
     return most;
 }
 
-static double rim_residual(const ax_form* f, int k, const double (*x)[3])
+static double rim_residual(const ax_form* f, int k, const double (*x)[3], int* worst)
 {
     const ax_rim_part* part = f->rim + k;
     double most = 0;
@@ -282,7 +291,7 @@ static double rim_residual(const ax_form* f, int k, const double (*x)[3])
             ax_curve_nearest(curve, x[part->hinges[i]], on);
         else
             memcpy(on, part->places[i], sizeof on);
-        most = fmax(most, ax_distance3(on, x[part->hinges[i]]));
+        take_further(ax_distance3(on, x[part->hinges[i]]), part->hinges[i], &most, worst);
     }
     ax_curve_free(curve);
     return most;
@@ -328,8 +337,9 @@ static void measure_held(ax_form* f, ax_form_report* r)
         if (f->rim[k].kind == AX_RIM_FREE)
             continue;
         ax_held_figure* to = r->held + r->held_count++;
-        *to = (ax_held_figure){.name = "boundary", .kind = rim_names[f->rim[k].kind], .count = f->rim[k].count};
-        to->residual = rim_residual(f, k, x);
+        *to = (ax_held_figure){
+            .name = "boundary", .kind = rim_names[f->rim[k].kind], .count = f->rim[k].count, .hinge = -1};
+        to->residual = rim_residual(f, k, x, &to->hinge);
         to->multiplier =
             s && g->rim ? largest_multiplier(s, g->rim[k], f->rim[k].kind == AX_RIM_FIXED ? f->rim[k].count : 1) / mean
                         : 0;
@@ -342,8 +352,8 @@ static void measure_held(ax_form* f, ax_form_report* r)
         const ax_solver* holder = ready ? (here && hangs ? f->hang : f->shape) : NULL;
         const ax_form_groups* groups = here && hangs ? &f->hang_groups : &f->shape_groups;
         ax_held_figure* to = r->held + r->held_count++;
-        *to = (ax_held_figure){.name = c->name, .kind = ax_held_kind_name(c->kind), .count = c->count};
-        to->residual = constraint_residual(f, k, at);
+        *to = (ax_held_figure){.name = c->name, .kind = ax_held_kind_name(c->kind), .count = c->count, .hinge = -1};
+        to->residual = constraint_residual(f, k, at, &to->hinge);
         to->multiplier = holder && groups->held ? largest_multiplier(holder, groups->held[k], group_size(c)) / mean : 0;
     }
 }
@@ -394,8 +404,8 @@ static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kin
 {
     r->findings = ax_realloc(r->findings, (size_t)r->finding_count + 1, sizeof *r->findings);
     ax_finding* finding = r->findings + r->finding_count++;
-    *finding =
-        (ax_finding){.severity = severity, .kind = kind, .triangle = -1, .hinge = -1, .value = value, .limit = limit};
+    *finding = (ax_finding){
+        .severity = severity, .kind = kind, .triangle = -1, .hinge = -1, .other = -1, .value = value, .limit = limit};
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(finding->text, sizeof finding->text, format, arguments);
@@ -497,16 +507,45 @@ static double underlay_distance(const ax_form* f, int k, int* panel)
     return least;
 }
 
+static int first_flipped(const ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        const int* h = linkage->triangles[t];
+        const double *o = f->flat[h[0]], *p = f->flat[h[1]], *q = f->flat[h[2]];
+        if (ax_cross2((double[2]){p[0] - o[0], p[1] - o[1]}, (double[2]){q[0] - o[0], q[1] - o[1]}) <= 0)
+            return t;
+    }
+    return -1;
+}
+
+// The panel whose edges differ most between the flat state and one in space.
+static int most_strained(const ax_form* f, const double (*x)[3])
+{
+    int at = -1;
+    double most = -1;
+    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
+        for (int k = 0, a, b; k < 3; ++k) {
+            edge_of(f, t, k, &a, &b);
+            double off = fabs(ax_distance3(x[a], x[b]) / ax_distance2(f->flat[a], f->flat[b]) - 1);
+            if (off > most)
+                most = off, at = t;
+        }
+    return at;
+}
+
 static void find_problems(ax_form* f, ax_form_report* r)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
     double degree = 180 / AX_PI;
     const char* unit = ax_unit_name(f->unit);
     bool moved = f->dynamics.kind != AX_DYNAMICS_NONE;
+    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
     double worst = fmax(r->flat_error, moved ? fmax(r->deployed_error, ax_form_hangs(f) ? r->simulated_error : 0) : 0);
     if (worst > settled_error)
         tell(r, AX_SEVERITY_FAILURE, "unsettled", worst, settled_error, "Edges are off by %.2g %%: %s.", 100 * worst,
-             f->iterations ? "the request cannot be met, or needs more steps" : "not solved yet");
+             f->iterations ? "the request cannot be met, or needs more steps" : "not solved yet")
+            ->triangle = most_strained(f, x);
     if (r->overlap_pairs) {
         int pair[1][2] = {{-1, -1}};
         ax_measure_overlaps(linkage, (const double(*)[2])f->flat, overlap_depth * r->edge, 1, pair);
@@ -514,12 +553,14 @@ static void find_problems(ax_form* f, ax_form_report* r)
         ax_panel_name(linkage, pair[0][0], a);
         ax_panel_name(linkage, pair[0][1], b);
         tell(r, AX_SEVERITY_FAILURE, "overlap", r->overlap_pairs, 0,
-             "%d pairs of panels overlap in the flat state, %s and %s first.", r->overlap_pairs, a, b)
-            ->triangle = pair[0][0];
+             "%d pairs of panels overlap in the flat state, %s and %s first.", r->overlap_pairs, a, b);
+        r->findings[r->finding_count - 1].triangle = pair[0][0];
+        r->findings[r->finding_count - 1].other = pair[0][1];
     }
     if (r->flipped)
         tell(r, AX_SEVERITY_FAILURE, "flipped", r->flipped, 0, "%d panels are turned over in the flat state.",
-             r->flipped);
+             r->flipped)
+            ->triangle = first_flipped(f);
     if (r->mouth_min < f->mouth_min - 0.1 / degree)
         tell(r, r->mouth_min < 0 ? AX_SEVERITY_FAILURE : AX_SEVERITY_WARNING, "mouth", r->mouth_min * degree,
              f->mouth_min * degree,
@@ -546,10 +587,13 @@ static void find_problems(ax_form* f, ax_form_report* r)
              linkage->hole_count, 100 * r->opening_min)
             ->hinge = linkage->hole_hinges[linkage->hole_start[least]];
     }
-    int folds = moved ? ax_form_folds(f, (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed)) : 0;
-    if (folds)
+    int fold[2], folds = moved ? ax_form_folds(f, x, fold) : 0;
+    if (folds) {
         tell(r, AX_SEVERITY_WARNING, "folded", folds, 0, "%d pairs of neighbouring panels are folded onto each other.",
              folds);
+        r->findings[r->finding_count - 1].triangle = fold[0];
+        r->findings[r->finding_count - 1].other = fold[1];
+    }
     if (moved) {
         int tight = 0;
         for (int h = 0; h < linkage->hinge_count; ++h)
@@ -564,7 +608,8 @@ static void find_problems(ax_form* f, ax_form_report* r)
     for (int k = 0; k < r->held_count; ++k)
         if (r->held[k].residual > rim_gap * r->edge && strcmp(r->held[k].kind, "fairness") != 0)
             tell(r, AX_SEVERITY_WARNING, "held", r->held[k].residual, rim_gap * r->edge,
-                 "'%s' (%s) is missed by up to %.3g %s.", r->held[k].name, r->held[k].kind, r->held[k].residual, unit);
+                 "'%s' (%s) is missed by up to %.3g %s.", r->held[k].name, r->held[k].kind, r->held[k].residual, unit)
+                ->hinge = r->held[k].hinge;
     if (r->curvature_max > 2 * AX_PI)
         tell(r, AX_SEVERITY_WARNING, "overhang", r->curvature_max, 2 * AX_PI,
              "The painted factors sum to %.0f degrees of curvature, above 360: fully open the surface turns over.",

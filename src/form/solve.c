@@ -633,7 +633,7 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     double lo = INFINITY, hi = -INFINITY;
     for (int h = 0; h < n; ++h)
         lo = fmin(lo, f->deployed[h][2]), hi = fmax(hi, f->deployed[h][2]);
-    bool folded = ax_form_shares(f) && ax_form_folds(f, (const double(*)[3])f->deployed) > 0;
+    bool folded = ax_form_shares(f) && ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0;
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
         ax_form_restart(f, 0.05), fresh = true;
     if (fresh) { // panels that give way before the holes are open settle for a flatter shape, and leave it slowly

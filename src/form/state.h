@@ -135,7 +135,7 @@ double ax_form_flat_error(const ax_form* form);
 double ax_form_deployed_error(const ax_form* form);
 double ax_form_simulated_error(const ax_form* form);
 // Pairs of neighbouring panels whose normals oppose each other.
-int ax_form_folds(const ax_form* form, const double (*x)[3]);
+int ax_form_folds(const ax_form* form, const double (*x)[3], int first[2]); // panels of the first; NULL: not wanted
 // Mean height of the deployed hinges above the rim's.
 double ax_form_bulge(const ax_form* form);
 double ax_form_sides_mean(const ax_form* form);

@@ -57,9 +57,10 @@ static json_t* curve(const ax_curve_shape* shape)
 static json_t* held(const char* name, const char* kind, const int* hinges, int count, json_t* weight,
                     const ax_held_figure* figure)
 {
-    return json_pack("{s:s, s:s, s:o, s:o, s:o, s:o}", "name", name, "kind", kind, "hinges", integers(hinges, count),
-                     "weight", weight, "residual", describe_number(figure ? figure->residual : NAN), "multiplier",
-                     describe_number(figure ? figure->multiplier : NAN));
+    return json_pack("{s:s, s:s, s:o, s:o, s:o, s:i, s:o}", "name", name, "kind", kind, "hinges",
+                     integers(hinges, count), "weight", weight, "residual",
+                     describe_number(figure ? figure->residual : NAN), "hinge", figure ? figure->hinge : -1,
+                     "multiplier", describe_number(figure ? figure->multiplier : NAN));
 }
 
 static json_t* rim_parts(const ax_form* form, const ax_form_report* report)
@@ -68,10 +69,12 @@ static json_t* rim_parts(const ax_form* form, const ax_form_report* report)
     const ax_rim_part* parts;
     int count = ax_form_rim(form, &parts);
     json_t* list = json_array();
-    for (int k = 0; k < count; ++k) {
+    for (int k = 0, measured = 0; k < count; ++k) {
         char name[24];
         snprintf(name, sizeof name, "rim %d", k + 1);
-        const ax_held_figure* figure = k < report->held_count ? &report->held[k] : NULL;
+        bool is =
+            parts[k].kind != AX_RIM_FREE && measured < report->held_count; // what holds is measured, in this order
+        const ax_held_figure* figure = is ? &report->held[measured++] : NULL;
         json_t* row = held(figure ? figure->name : name, kinds[parts[k].kind], parts[k].hinges, parts[k].count,
                            json_null(), figure);
         if (parts[k].kind == AX_RIM_SLIDE)
@@ -196,32 +199,42 @@ typedef struct check {
     char answer[96], limit[64];
     double value;
     verdict severity;
-    int triangle, hinge;
+    int triangle, hinge, other;
 } check;
 
 static json_t* check_json(const check* c)
 {
-    return json_pack("{s:s, s:s, s:s, s:s, s:o, s:s, s:i, s:i}", "key", c->key, "title", c->title, "answer", c->answer,
-                     "limit", c->limit, "value", describe_number(c->value), "severity", verdict_words[c->severity],
-                     "triangle", c->triangle, "hinge", c->hinge);
+    return json_pack("{s:s, s:s, s:s, s:s, s:o, s:s, s:i, s:i, s:i}", "key", c->key, "title", c->title, "answer",
+                     c->answer, "limit", c->limit, "value", describe_number(c->value), "severity",
+                     verdict_words[c->severity], "triangle", c->triangle, "hinge", c->hinge, "other", c->other);
 }
 
-// The worst finding of one of two kinds decides; without one, what the figure itself says.
-static verdict found(const ax_form_report* r, const char* kind, const char* other, check* c)
+// The worst finding of one of two kinds, NULL: there is none.
+static const ax_finding* worst_finding(const ax_form_report* r, const char* kind, const char* other)
 {
-    verdict worst = PASS;
+    const ax_finding* worst = NULL;
     for (int k = 0; k < r->finding_count; ++k) {
         const ax_finding* f = &r->findings[k];
-        verdict severity = f->severity == AX_SEVERITY_FAILURE   ? FAILURE
-                           : f->severity == AX_SEVERITY_WARNING ? WARNING
-                                                                : NOTE;
-        if ((strcmp(f->kind, kind) == 0 || strcmp(f->kind, other) == 0) && severity > worst) {
-            worst = severity;
-            c->triangle = f->triangle;
-            c->hinge = f->hinge;
-        }
+        if ((strcmp(f->kind, kind) == 0 || strcmp(f->kind, other) == 0) && (!worst || f->severity > worst->severity))
+            worst = f;
     }
     return worst;
+}
+
+// A finding decides, and says where; without one, what the figure itself says.
+static verdict taken(const ax_finding* f, check* c)
+{
+    if (!f)
+        return PASS;
+    c->triangle = f->triangle;
+    c->hinge = f->hinge;
+    c->other = f->other;
+    return f->severity == AX_SEVERITY_FAILURE ? FAILURE : f->severity == AX_SEVERITY_WARNING ? WARNING : NOTE;
+}
+
+static verdict found(const ax_form_report* r, const char* kind, const char* other, check* c)
+{
+    return taken(worst_finding(r, kind, other), c);
 }
 
 static double worst_of(double a, double b)
@@ -229,22 +242,28 @@ static double worst_of(double a, double b)
     return isnan(a) ? b : isnan(b) ? a : fmax(a, b);
 }
 
-static check scale_check(const ax_form_report* r)
+static check scale_check(const ax_form_report* r, const ax_form_view* v)
 {
-    check c = {"scale", "Scale factors", .value = r->realised_max, .triangle = r->scale_off_triangle, .hinge = -1};
+    check c = {"scale",     "Scale factors", .value = r->realised_max, .triangle = r->scale_off_triangle,
+               .hinge = -1, .other = -1};
     snprintf(c.answer, sizeof c.answer, "%.2f to %.2f", r->realised_min, r->realised_max);
     snprintf(c.limit, sizeof c.limit, "1 to 2, asked within %.2f on %d panels off the rim", r->scale_off_max,
              r->scale_judged);
     c.severity = found(r, "scale", "scale", &c);
-    if (r->scale_judged && (r->realised_max > 2 + 1e-6 || r->realised_min < 1 - 1e-3))
+    bool above = r->realised_max > 2 + 1e-6;
+    if (r->scale_judged && (above || r->realised_min < 1 - 1e-3)) {
         c.severity = FAILURE;
+        for (int t = 0; t < v->linkage->triangle_count; ++t)
+            if (v->realised[t] == (above ? r->realised_max : r->realised_min))
+                c.triangle = t;
+    }
     return c;
 }
 
 static check mouth_check(const ax_form_report* r)
 {
     double degrees = r->mouth_min * 180 / AX_PI;
-    check c = {"mouth", "Mouth angle", .value = r->mouth_min, .triangle = -1, .hinge = r->mouth_hinge};
+    check c = {"mouth", "Mouth angle", .value = r->mouth_min, .triangle = -1, .hinge = r->mouth_hinge, .other = -1};
     snprintf(c.answer, sizeof c.answer, "%.1f deg at the tightest hinge", degrees);
     snprintf(c.limit, sizeof c.limit, "above 0 deg");
     c.severity = found(r, "mouth", "tight", &c);
@@ -253,29 +272,43 @@ static check mouth_check(const ax_form_report* r)
     return c;
 }
 
+// Whatever meets that must not: flat panels, panels folded onto each other, the shell and the site.
 static check overlap_check(const ax_form_report* r)
 {
     int count = r->overlap_pairs + r->flipped;
-    check c = {"overlap", "Flat panels apart", .value = count, .triangle = -1, .hinge = -1};
-    snprintf(c.answer, sizeof c.answer, count ? "%d pairs overlap, %d turned over" : "none overlap", r->overlap_pairs,
-             r->flipped);
-    snprintf(c.limit, sizeof c.limit, "none may");
-    found(r, "overlap", "flipped", &c);
-    c.severity = count ? FAILURE : PASS;
+    const ax_finding* f = r->overlap_pairs ? worst_finding(r, "overlap", "overlap")
+                          : count          ? worst_finding(r, "flipped", "flipped")
+                                           : worst_finding(r, "folded", "clearance");
+    check c = {"overlap",      "Collisions", .value = count ? count : f ? f->value : 0,
+               .triangle = -1, .hinge = -1,  .other = -1};
+    snprintf(c.limit, sizeof c.limit, "none may meet");
+    if (count)
+        snprintf(c.answer, sizeof c.answer, "%d pairs overlap, %d turned over", r->overlap_pairs, r->flipped);
+    else if (!f)
+        snprintf(c.answer, sizeof c.answer, "none");
+    else if (strcmp(f->kind, "folded") == 0)
+        snprintf(c.answer, sizeof c.answer, "%.0f pairs folded together", f->value);
+    else {
+        snprintf(c.answer, sizeof c.answer, "%.3g from the site", f->value);
+        snprintf(c.limit, sizeof c.limit, "%.3g are asked", f->limit);
+    }
+    c.severity = taken(f, &c);
+    if (f && strcmp(f->kind, "clearance") == 0 && f->value > 1e-3 * r->edge) // too near, but it can be built
+        c.severity = WARNING;
     return c;
 }
 
 static check curvature_check(const ax_form_report* r, const ax_form_view* v, const double* curvature)
 {
     int known = 0, inward = 0;
-    check c = {"curvature", "Bulges everywhere", .triangle = -1, .hinge = -1};
-    double worst = 0, size = r->edge > 0 ? r->edge * sqrt(v->linkage->triangle_count) : 1; // of the shell
+    check c = {"curvature", "Bulges everywhere", .triangle = -1, .hinge = -1, .other = -1};
+    double least = INFINITY, size = r->edge > 0 ? r->edge * sqrt(v->linkage->triangle_count) : 1; // of the shell
     for (int t = 0; t < v->linkage->triangle_count; ++t)
         if (isfinite(curvature[t])) {
             ++known;
             inward += curvature[t] * size < -0.1; // flat within a tenth of the shell's own size is not inward
-            if (curvature[t] < worst)
-                worst = curvature[t], c.triangle = t;
+            if (curvature[t] < least)
+                least = curvature[t], c.triangle = t;
         }
     c.value = known ? (double)inward / known : NAN;
     if (!known)
@@ -293,57 +326,95 @@ static check curvature_check(const ax_form_report* r, const ax_form_view* v, con
 static check rim_check(const ax_form_report* r, const ax_form_view* v)
 {
     double residual = 0;
-    check c = {"rim", "Rim and constraints", .triangle = -1, .hinge = -1};
+    check c = {"rim", "Rim and constraints", .triangle = -1, .hinge = -1, .other = -1};
     for (int k = 0; k < r->held_count; ++k)
-        residual = fmax(residual, r->held[k].residual);
+        if (r->held[k].residual >= residual) {
+            residual = r->held[k].residual;
+            c.hinge = r->held[k].hinge;
+        }
     c.value = r->held_count ? residual : NAN;
     if (r->held_count)
         snprintf(c.answer, sizeof c.answer, "largest gap %.3g %s", residual, ax_unit_name(v->unit));
     else
         snprintf(c.answer, sizeof c.answer, "the rim is free");
     snprintf(c.limit, sizeof c.limit, "%.2g %s", 0.05 * r->edge, ax_unit_name(v->unit));
-    c.severity = found(r, "rim", "constraint", &c);
+    c.severity = found(r, "held", "held", &c);
     if (r->held_count && residual > 0.05 * r->edge && c.severity < WARNING)
         c.severity = WARNING;
     return c;
 }
 
-static check match_check(const ax_form_report* r)
+static check match_check(const ax_form_report* r, const ax_form_view* v)
 {
-    check c = {"match", "Simulated as designed", .value = r->simulated_rms, .triangle = -1, .hinge = -1};
+    check c = {"match", "Simulated as designed", .value = r->simulated_rms, .triangle = -1, .hinge = -1, .other = -1};
     bool known = isfinite(r->simulated_rms);
     if (known)
         snprintf(c.answer, sizeof c.answer, "differ by %.3f L rms, %.2f L at most", r->simulated_rms, r->simulated_max);
     else
         snprintf(c.answer, sizeof c.answer, "no load yet");
     snprintf(c.limit, sizeof c.limit, "0.1 L rms");
-    c.severity = !known ? UNKNOWN : found(r, "slack", "material", &c);
+    double most = -1;
+    for (int h = 0; known && h < v->linkage->hinge_count; ++h) {
+        double off = ax_distance3(v->simulated[h], v->deployed[h]);
+        if (off > most)
+            most = off, c.hinge = h;
+    }
+    c.severity = !known ? UNKNOWN : found(r, "slack", "tight", &c);
     if (known && r->simulated_rms > 0.1 && c.severity < WARNING)
         c.severity = WARNING;
     return c;
 }
 
-static check force_check(const ax_form_report* r, const ax_design* exact)
+static int largest(const double* values, int count)
 {
-    check c = {"force", "Forces in balance", .triangle = -1, .hinge = -1};
+    int at = -1;
+    for (int k = 0; k < count; ++k)
+        if (isfinite(values[k]) && (at < 0 || values[k] > values[at]))
+            at = k;
+    return at;
+}
+
+// Leads to the panel that bears most, or whose edges are off most.
+static check force_check(const ax_form_report* r, const ax_form_view* v, const double* residual, const ax_design* exact,
+                         bool at_rest)
+{
+    check c = {"force", "Forces in balance", .triangle = -1, .hinge = -1, .other = -1};
     bool known = exact && exact->report.simulated;
     c.value = known ? exact->report.force_residual : worst_of(r->deployed_error, r->simulated_error);
     if (known) {
         snprintf(c.answer, sizeof c.answer, "exact, residual %.0e", c.value);
         snprintf(c.limit, sizeof c.limit, "1e-10 of the load");
         c.severity = c.value <= 1e-10 && exact->report.stable ? PASS : WARNING;
+        double most = -1;
+        for (int t = 0; exact->edge_forces && t < v->linkage->triangle_count; ++t)
+            for (int k = 0; k < 3; ++k)
+                if (fabs(exact->edge_forces[t][k]) > most)
+                    most = fabs(exact->edge_forces[t][k]), c.triangle = t;
     } else {
         snprintf(c.answer, sizeof c.answer, "edges within %.1e", c.value);
         snprintf(c.limit, sizeof c.limit, "Finish makes it exact");
         c.severity = UNKNOWN;
+        c.triangle = largest(residual, v->linkage->triangle_count);
+        const ax_finding* f = worst_finding(r, "unsettled", "unsettled");
+        if (f && at_rest) {
+            c.severity = taken(f, &c);
+            snprintf(c.answer, sizeof c.answer, "edges off by %.2g %%", 100 * f->value);
+            snprintf(c.limit, sizeof c.limit, "%.2g %%", 100 * f->limit);
+        }
     }
     return c;
 }
 
-json_t* describe_checks(const ax_form_report* r, const ax_form_view* v, const double* curvature, const ax_design* exact)
+json_t* describe_checks(const ax_form_report* r, const ax_form_view* v, const shape_measures* m, const ax_design* exact,
+                        bool at_rest)
 {
-    const check checks[] = {scale_check(r),  mouth_check(r), overlap_check(r),     curvature_check(r, v, curvature),
-                            rim_check(r, v), match_check(r), force_check(r, exact)};
+    const check checks[] = {scale_check(r, v),
+                            mouth_check(r),
+                            overlap_check(r),
+                            curvature_check(r, v, m->curvature),
+                            rim_check(r, v),
+                            match_check(r, v),
+                            force_check(r, v, m->residual, exact, at_rest)};
     json_t* list = json_array();
     for (size_t k = 0; k < sizeof checks / sizeof *checks; ++k)
         json_array_append_new(list, check_json(&checks[k]));
@@ -394,23 +465,23 @@ static json_t* figures(const ax_design* design)
     return list;
 }
 
-json_t* describe_report(unsigned revision, const ax_form_report* r, const ax_form_view* v, const double* curvature,
-                        const ax_design* exact)
+json_t* describe_report(unsigned revision, const ax_form_report* r, const ax_form_view* v, const shape_measures* m,
+                        const ax_design* exact, bool at_rest)
 {
     static const char* const severities[] = {"note", "warning", "failure"};
-    json_t *checks = describe_checks(r, v, curvature, exact), *findings = json_array(), *all_held = json_array();
+    json_t *checks = describe_checks(r, v, m, exact, at_rest), *findings = json_array(), *all_held = json_array();
     for (int k = 0; k < r->finding_count; ++k) {
         const ax_finding* f = &r->findings[k];
-        json_array_append_new(findings,
-                              json_pack("{s:s, s:s, s:s, s:o, s:o, s:i, s:i}", "severity", severities[f->severity],
-                                        "kind", f->kind, "text", f->text, "value", describe_number(f->value), "limit",
-                                        describe_number(f->limit), "triangle", f->triangle, "hinge", f->hinge));
+        json_array_append_new(findings, json_pack("{s:s, s:s, s:s, s:o, s:o, s:i, s:i, s:i}", "severity",
+                                                  severities[f->severity], "kind", f->kind, "text", f->text, "value",
+                                                  describe_number(f->value), "limit", describe_number(f->limit),
+                                                  "triangle", f->triangle, "hinge", f->hinge, "other", f->other));
     }
     for (int k = 0; k < r->held_count; ++k) {
         const ax_held_figure* f = &r->held[k];
-        json_array_append_new(all_held, json_pack("{s:s, s:s, s:i, s:o, s:o}", "name", f->name, "kind", f->kind,
-                                                  "count", f->count, "residual", describe_number(f->residual),
-                                                  "multiplier", describe_number(f->multiplier)));
+        json_array_append_new(all_held, json_pack("{s:s, s:s, s:i, s:o, s:i, s:o}", "name", f->name, "kind", f->kind,
+                                                  "count", f->count, "residual", describe_number(f->residual), "hinge",
+                                                  f->hinge, "multiplier", describe_number(f->multiplier)));
     }
     return json_pack("{s:s, s:i, s:o, s:o, s:o, s:o, s:o}", "event", "report", "revision", revision, "verdict",
                      describe_verdict(checks), "checks", checks, "findings", findings, "held", all_held, "figures",
@@ -583,8 +654,17 @@ json_t* describe_plan(const ax_cut_plan* p)
     json_t* parts = json_array();
     for (int k = 0; k < p->part_count; ++k)
         json_array_append_new(parts, json_pack("{s:s, s:i}", "name", p->parts[k].name, "count", p->parts[k].count));
-    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:i, s:i, s:o}", "sheets", p->sheet_count, "cut_length",
+    static const char* const when[] = {"turning", "flat", "deployed", "simulated", "between"}; // by frame + 1
+    json_t* collisions = json_array();
+    for (int k = 0; k < p->clash_count; ++k) {
+        const ax_cut_clash* c = &p->clashes[k];
+        json_array_append_new(collisions,
+                              json_pack("{s:[i, i], s:i, s:s, s:o, s:o}", "panels", c->panels[0], c->panels[1], "hinge",
+                                        c->hinge, "when", when[c->frame + 1], "opening", describe_number(c->opening),
+                                        "overlap", describe_number(c->overlap)));
+    }
+    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:i, s:o, s:i, s:o}", "sheets", p->sheet_count, "cut_length",
                      describe_number(1e-3 * cut), "seconds", describe_number(p->seconds), "mass",
                      describe_number(p->mass), "utilisation", describe_number(p->utilisation), "clashes",
-                     p->clashes_found, "seams", p->seam_count, "parts", parts);
+                     p->clashes_found, "collisions", collisions, "seams", p->seam_count, "parts", parts);
 }

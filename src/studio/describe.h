@@ -5,6 +5,7 @@
 #include "ax/report.h"
 #include "ax/session.h"
 #include "ax/target.h"
+#include "studio/shape.h"
 
 #include <jansson.h>
 
@@ -15,12 +16,12 @@ typedef struct describe_names {
 json_t* describe_document(const describe_names* names, const ax_session* s, const ax_form_report* report);
 json_t* describe_linkage(const char* id, unsigned topology, const ax_form_view* view, const double origin[3],
                          const double flat_origin[2], const char* variant);
-// The checks of "Can it deploy?", in their fixed order, and the verdict they add up to.
-json_t* describe_checks(const ax_form_report* report, const ax_form_view* view, const double* curvature,
-                        const ax_design* exact);
+// The checks of "Can it deploy?", in their fixed order, and the verdict they add up to. What moves is not settled, and need not be.
+json_t* describe_checks(const ax_form_report* report, const ax_form_view* view, const shape_measures* measures,
+                        const ax_design* exact, bool at_rest);
 json_t* describe_verdict(const json_t* checks);
 json_t* describe_report(unsigned revision, const ax_form_report* report, const ax_form_view* view,
-                        const double* curvature, const ax_design* exact);
+                        const shape_measures* measures, const ax_design* exact, bool at_rest);
 json_t* describe_screen(const char* name, const ax_mesh* mesh, const ax_mesh_repairs* repairs, const ax_screen* screen);
 json_t* describe_operators(void);
 json_t* describe_exporters(void);

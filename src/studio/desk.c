@@ -284,7 +284,7 @@ static void measure(desk* d)
     ax_form_view v = ax_form_look(form);
     shape_measures m = shape_measure(&v);
     const ax_design* exact = shown_exact(d);
-    post(d, SLOT_REPORT, describe_report(d->board.revision, &d->report, &v, m.curvature, exact));
+    post(d, SLOT_REPORT, describe_report(d->board.revision, &d->report, &v, &m, exact, !d->moving && !d->busy));
     shape_measures_free(&m);
     d->reported = ax_seconds();
     d->report_time = d->reported - start;

@@ -12,7 +12,7 @@ static ax_status named(const job* j, const char** name, ax_error* error)
 // Of the document as another program may have written it: only what fits the protocol goes to pages.
 static json_t* figures_of(const ax_variant* v)
 {
-    static const char* const whole[] = {"triangle", "hinge"};
+    static const char* const whole[] = {"triangle", "hinge", "other"};
     static const char* const text[] = {"key", "title", "answer", "limit", "severity"};
     json_t *figures = json_loads(v->figures, 0, NULL), *checks = NULL, *check;
     int triangles, exact;
@@ -61,7 +61,7 @@ static ax_status keep(desk* d, const job* j, json_t** result, ax_error* error)
     ax_form_measure(form, &report);
     shape_measures measures = shape_measure(&view);
     json_t* figures = json_pack("{s:i, s:b, s:o}", "triangles", view.linkage->triangle_count, "exact", d->exact != NULL,
-                                "checks", describe_checks(&report, &view, measures.curvature, d->exact));
+                                "checks", describe_checks(&report, &view, &measures, d->exact, true));
     char* text = json_dumps(figures, JSON_COMPACT);
     status = ax_session_keep_variant(d->session, name, text, error);
     free(text);

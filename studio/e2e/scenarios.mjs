@@ -15,14 +15,15 @@ const circle = { op: "start_circle", radius: 5, triangles: 200, scale: 1.2 };
 const bowl = [circle, { op: "gradient_radial", radius: 5, inner: 1.5, outer: 1.15 }, { op: "rim_circle", radius: 5.5 }, { op: "inflation" }];
 
 /** A studio on a recipe of these operators. */
-async function studioOn(operators) {
+async function studioOn(operators, files = {}) {
     const studio = new Studio();
+    for (const [name, text] of Object.entries(files)) writeFileSync(join(studio.folder, name), text);
     writeFileSync(join(studio.folder, "shell.json"), JSON.stringify({ format: "auxshell-recipe", version: 1, operators }));
     return studio.start("shell.json");
 }
 
-async function withStudio(browser, operators, run, options) {
-    const studio = await studioOn(operators);
+async function withStudio(browser, operators, run, options, files) {
+    const studio = await studioOn(operators, files);
     try {
         const hand = await Hand.open(browser, studio.address, options);
         await run(hand, studio);
@@ -344,6 +345,52 @@ export const scenarios = {
         });
     },
 
+    async "every check and finding leads to its place: selected, and in the middle of the views"(browser) {
+        const small = { ...circle, triangles: 200 };
+        const site = "v -9 -9 0.2\nv 9 -9 0.2\nv 9 9 0.2\nv -9 9 0.2\nf 1 2 3\nf 1 3 4\n";
+        const shells = {
+            "a load": [bowl, ["scale", "mouth", "curvature", "rim", "match", "force"]],
+            "panels that overlap": [[small, { op: "fill", value: 2 }, { op: "paint", points: [[1, 0], [2, 1]], value: 1, radius: 1 }, { op: "inflation" }], ["mouth", "overlap"]],
+            "panels folded together": [[small, { op: "fill", value: 2 }, { op: "rim_circle", radius: 3 }, { op: "inflation" }], ["overlap", "force"]],
+            "a site that is near": [[...bowl, { op: "underlay", name: "ground", file: "ground.obj", clearance: 1 }], ["overlap"]],
+        };
+        for (const [name, [operators, wanted]] of Object.entries(shells))
+            await withStudio(browser, operators, async (hand) => {
+                const { page } = hand;
+                // the middle of what is selected, over the size of the view; and that it is in sight
+                const place = () => page.evaluate(() => {
+                    const stage = auxshell.stage.value;
+                    const view = stage.views.deployed;
+                    const panels = [...auxshell.selection.selected.value];
+                    const centre = view.orbit.camera.position.clone().set(0, 0, 0);
+                    for (const t of panels) centre.addScaledVector(stage.skins.space.centre(t, centre.clone()), 1 / panels.length);
+                    const p = stage.project(view, centre);
+                    return { panels, off: Math.max(Math.abs(p.x - view.rect.x - view.rect.width / 2) / view.rect.width, Math.abs(p.y - view.rect.y - view.rect.height / 2) / view.rect.height) };
+                });
+                const leadsTo = async (button, what) => {
+                    await page.evaluate(() => (auxshell.selection.clearSelection(), auxshell.stage.value.views.deployed.orbit.pan(200, 100, 600)));
+                    await button.click();
+                    await page.waitForTimeout(50);
+                    const { panels, off } = await place();
+                    assert.ok(panels.length === 1 || panels.length === 2, `${name}, ${what}: ${panels.length} panels are selected`);
+                    assert.ok(off < 0.02, `${name}, ${what}: ${off} off the middle of the view`);
+                    return panels;
+                };
+                const report = await page.evaluate(() => auxshell.session.report.value);
+                for (const key of wanted) {
+                    const c = report.checks.find((x) => x.key === key);
+                    await hand.key(["match", "force"].includes(key) ? "Alt+2" : "Alt+1");
+                    const panels = await leadsTo(page.locator(`.checks [data-check="${key}"]`), key);
+                    if (c.triangle >= 0) assert.equal(panels[0], c.triangle);
+                    if (c.other >= 0) assert.deepEqual(panels, [c.triangle, c.other], "both of a pair");
+                }
+                await page.getByRole("button", { name: "All findings" }).click();
+                const findings = page.getByRole("region", { name: "Findings" });
+                for (const [k, f] of report.findings.filter((x) => x.triangle >= 0 || x.hinge >= 0).entries()) await leadsTo(findings.getByRole("button").nth(k), f.kind);
+                if (name === "a site that is near") assert.ok(report.findings.some((f) => f.kind === "clearance"));
+            }, { reducedMotion: "reduce" }, { "ground.obj": site });
+    },
+
     async "variants are kept and compared"(browser) {
         await withStudio(browser, bowl, async (hand) => {
             const { page } = hand;
@@ -361,6 +408,25 @@ export const scenarios = {
             await page.getByRole("article", { name: "Variant A" }).getByRole("button", { name: "Take" }).click();
             await page.waitForFunction(() => auxshell.session.documentState.value.steps.length === 4, null, { timeout: 60000 });
         });
+    },
+
+    async "variants are there again after a crash, with their figures and pictures"(browser) {
+        const studio = await new Studio().start(".");
+        try {
+            const hand = await Hand.open(browser, studio.address);
+            await hand.page.getByRole("region", { name: "Variants" }).getByRole("button", { name: "Keep" }).click();
+            await hand.page.locator(".variant img").waitFor({ timeout: 30000 });
+            const kept = await hand.page.evaluate(() => auxshell.session.variants.value);
+            const document = new URL(hand.page.url()).hash;
+            await studio.stop("SIGKILL");
+            await studio.start(".");
+            const again = await Hand.open(browser, studio.address + document);
+            await again.page.locator(".variant img").waitFor({ timeout: 30000 });
+            assert.deepEqual(await again.page.evaluate(() => auxshell.session.variants.value), kept);
+            assert.deepEqual([...hand.errors, ...again.errors], []);
+        } finally {
+            await studio.remove();
+        }
     },
 
     async "everything by keyboard: panels by name, numbers with units, a step, its undoing"(browser) {

@@ -65,6 +65,8 @@ export interface Plan {
     mass: number;
     utilisation: number;
     clashes: number;
+    /** The first of them: millimetres, and for those between flat and open the share of the way. */
+    collisions: { panels: [number, number]; hinge: number; when: "flat" | "deployed" | "simulated" | "between" | "turning"; opening: number | null; overlap: number | null }[];
     seams: number;
     parts: { name: string; count: number }[];
 }
@@ -106,6 +108,8 @@ export interface Held {
     hinges: number[];
     weight: number | null;
     residual: number;
+    /** The hinge that is furthest off. */
+    hinge: number;
     multiplier: number;
     curve?: Curve;
 }
@@ -164,6 +168,8 @@ export interface Check {
     severity: Severity;
     triangle: number;
     hinge: number;
+    /** The second panel of a pair. */
+    other: number;
 }
 
 export interface Finding {
@@ -174,6 +180,7 @@ export interface Finding {
     limit: number | null;
     triangle: number;
     hinge: number;
+    other: number;
 }
 
 export interface Figure {
@@ -192,7 +199,7 @@ export interface ReportEvent {
     verdict: { word: string; severity: Severity };
     checks: Check[];
     findings: Finding[];
-    held: { name: string; kind: string; count: number; residual: number; multiplier: number }[];
+    held: { name: string; kind: string; count: number; residual: number; hinge: number; multiplier: number }[];
     figures: Figure[];
 }
 

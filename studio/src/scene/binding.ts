@@ -75,10 +75,8 @@ export function bindScene(stage: Stage): () => void {
     }));
     stops.push(effect(() => {
         const place = shown.value;
-        const shell = currentShell();
-        if (!place || !shell) return;
-        const panel = place.panel >= 0 ? place.panel : place.hinge >= 0 ? shell.linkage.around[2 * place.hinge] : -1;
-        if (panel >= 0) stage.lookAt(panel);
+        const n = currentShell()?.linkage.panels ?? 0;
+        if (place && place.panels.every((t) => t < n)) stage.lookAt(place.panels);
     }));
 
     const toolOverlay: Overlay = (context, s) => {

@@ -252,15 +252,29 @@ export class Stage {
         this.invalidate();
     }
 
-    /** Brings a place of the model to the middle of the views, from near by. */
-    lookAt(panel: number): void {
+    /** Brings panels to the middle of the views, from near by and from the side that they face. */
+    lookAt(panels: readonly number[]): void {
         for (const id of this.shown) {
             const view = this.views[id];
             const skin = this.skins?.[view.state];
             const scene = this.scenes?.[view.state];
-            if (!skin || !scene) continue;
-            const centre = skin.centre(panel, new THREE.Vector3());
-            view.orbit.go({ ...view.orbit.pose, target: [centre.x, centre.y, centre.z], distance: Math.min(view.orbit.pose.distance, 24 * scene.panels.edge / Math.tan(Math.PI / 12) / 4) }, this.animated);
+            if (!skin || !scene || panels.length === 0) continue;
+            const { pose } = view.orbit;
+            const centre = new THREE.Vector3();
+            const facing = new THREE.Vector3();
+            const place = new THREE.Vector3();
+            for (const panel of panels) {
+                centre.addScaledVector(skin.centre(panel, place), 1 / panels.length);
+                facing.add(skin.normal(panel, place));
+            }
+            const reach = panels.reduce((most, panel) => Math.max(most, skin.centre(panel, place).distanceTo(centre)), 0);
+            const distance = Math.min(pose.distance, Math.max(6 * scene.panels.edge, 1.5 * reach) / Math.tan(Math.PI / 12));
+            const [from, to] = [pose.azimuth * (Math.PI / 180), Math.atan2(facing.y, facing.x)];
+            const steep = Math.hypot(facing.x, facing.y) > 0.3 * Math.abs(facing.z);
+            // turned away, it would be hidden by the shell itself
+            const turned = pose.projection === "perspective" && steep && Math.cos(from - to) < 0.3;
+            view.orbit.go({ ...pose, target: [centre.x, centre.y, centre.z], distance, azimuth: turned ? to * (180 / Math.PI) : pose.azimuth }, this.animated);
+            view.orbit.touched = true;
         }
         this.invalidate();
     }

@@ -88,10 +88,7 @@ export const commands: Command[] = [
     { id: "frame", title: "Show all", keys: ["Home", "A"], group: "View", run: () => stage.value?.shown.forEach((id) => stage.value!.frame(stage.value!.views[id])) },
     {
         id: "frame-selection", title: "Show the selection", keys: ["."], group: "View",
-        run: () => {
-            const first = [...selected.value][0];
-            if (first !== undefined) stage.value?.lookAt(first);
-        },
+        run: () => void (selected.value.size && stage.value?.lookAt([...selected.value])),
     },
     { id: "perspective", title: "From the corner", keys: ["0"], group: "View", run: () => preset("perspective") },
     { id: "top", title: "From the top", keys: ["7"], group: "View", run: () => preset("top") },

@@ -33,7 +33,11 @@ export const revision = signal(0);
 export const currentShell = () => shell;
 
 /** The panel edge L, for figures that are given over it. */
-export const panelEdge = () => (shell ? medianEdge(shell.linkage, shell.flat) : 1);
+export const panelEdge = computed(() => {
+    topology.value;
+    report.value;
+    return shell ? medianEdge(shell.linkage, shell.flat) : 1;
+});
 
 export type ShellListener = (shell: Shell, change: { linkage: boolean; frame: Frame }) => void;
 const shellListeners = new Set<ShellListener>();

@@ -1,9 +1,10 @@
 // What Analyse adds: a switch of fields over the view, and the sections of its inspector.
 import { leadingForce } from "../panels/fields";
 import { currentShell, documentState, report, revision, status } from "../state/session";
-import { selected, select, show } from "../state/selection";
+import { type Place, selected, show } from "../state/selection";
 import { availableFields, fieldId, useField } from "../state/view";
-import { Section, Segments } from "./controls";
+import { Section, Segments, severityClass, severityIcon } from "./controls";
+import { Icon } from "./icons";
 import { type LengthUnit, count, decimals, length, number, scientific } from "./format";
 
 export function AnalyseFields() {
@@ -40,8 +41,19 @@ export function AnalysePanel() {
         for (let k = 0; k < 3; k++) sum[k] += at[3 * h + k];
         largest = Math.max(largest, Math.hypot(at[3 * h], at[3 * h + 1], at[3 * h + 2]));
     });
+    const leads = (p: Place) => p.triangle >= 0 || p.hinge >= 0;
     return (
         <>
+            {r && (
+                <Section title="Findings" aside={r.findings.length ? count(r.findings.length) : undefined}>
+                    {r.findings.length === 0 && <p class="empty">Nothing needs a look.</p>}
+                    {r.findings.map((f, k) => {
+                        const words = <><Icon name={severityIcon[f.severity]} size={16} class={`icon ${severityClass[f.severity]}`} /><span class="grow">{f.text}</span></>;
+                        return leads(f) ? <button key={k} type="button" class="finding" title="Show the place" onClick={() => show(f)}>{words}<Icon name="show" size={16} class="icon muted" /></button>
+                            : <div key={k} class="finding">{words}</div>;
+                    })}
+                </Section>
+            )}
             <Section title="Load" aside={load ? { none: "None", gravity: "Gravity", inflation: "Inflation" }[load.kind] : undefined}>
                 {load && load.kind !== "none" && (
                     <table class="figures">
@@ -72,7 +84,7 @@ export function AnalysePanel() {
                         <tbody>
                             {strongest.map(({ f, t }) => (
                                 <tr key={t} aria-selected={selected.value.has(t)}>
-                                    <th scope="row"><button type="button" class="link" onClick={() => (select([t]), show(t, -1))}>{shell.name(t)}</button></th>
+                                    <th scope="row"><button type="button" class="link" onClick={() => show({ triangle: t, hinge: -1 })}>{shell.name(t)}</button></th>
                                     <td>{f < 0 ? "compressed" : "pulled"}</td>
                                     <td>{f > 0 ? "+" : ""}{newtons(f)}</td>
                                 </tr>
@@ -96,7 +108,7 @@ export function AnalysePanel() {
             {r && r.held.length > 0 && (
                 <Section title="Held" aside="Off by">
                     <table class="figures">
-                        <tbody>{r.held.map((h) => <tr key={h.name}><th scope="row">{h.name}</th><td>{length(h.residual, unit)}</td></tr>)}</tbody>
+                        <tbody>{r.held.map((h) => <tr key={h.name}><th scope="row"><button type="button" class="link" title="Show where it is furthest off" onClick={() => show({ triangle: -1, hinge: h.hinge })}>{h.name}</button></th><td>{length(h.residual, unit)}</td></tr>)}</tbody>
                     </table>
                 </Section>
             )}

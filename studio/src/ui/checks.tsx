@@ -1,7 +1,7 @@
 // "Can it deploy?", always in sight: a verdict and what it hangs on. A check leads to its place.
 import { show } from "../state/selection";
 import { documentState, panelEdge, report, status } from "../state/session";
-import { mode } from "../state/view";
+import { drawerOpen, mode } from "../state/view";
 import type { Check } from "../protocol/types";
 import { severityClass, severityIcon } from "./controls";
 import { checkWords } from "./checkwords";
@@ -19,7 +19,7 @@ function shownChecks(all: Check[]): Check[] {
             const k = chosen.findLastIndex((x) => rank[x.severity] >= 2);
             if (k >= 0) chosen[k] = c;
         }
-    return chosen.sort((a, b) => wanted.indexOf(a.key) - wanted.indexOf(b.key));
+    return chosen.sort((a, b) => all.indexOf(a) - all.indexOf(b));
 }
 
 export function Checks() {
@@ -31,15 +31,16 @@ export function Checks() {
     const words = failed ? `${plural(failed, "check")} failed` : warned ? `${plural(warned, "check")} ${warned === 1 ? "needs" : "need"} a look` : r.verdict.severity === "unknown" ? "Still measuring" : "All checks passed";
     return (
         <section class={`checks${busy ? " stale" : ""}`} aria-label="Can it deploy?">
-            <div class="verdict">
+            <button type="button" class="verdict" title="All findings" aria-label={`Can it deploy? ${r.verdict.word}, ${words}. All findings`} onClick={() => ((mode.value = "analyse"), (drawerOpen.value = true))}>
                 <span class="q">Can it deploy?</span>
                 <span class={`answer ${severityClass[r.verdict.severity]}`}><Icon name={severityIcon[r.verdict.severity]} size={20} /><span>{r.verdict.word}</span></span>
                 <span class="l">{words}</span>
-            </div>
+            </button>
             {shownChecks(r.checks).map((c) => {
-                const w = checkWords(c, (documentState.value?.unit ?? "m") as LengthUnit, panelEdge());
+                const w = checkWords(c, (documentState.value?.unit ?? "m") as LengthUnit, panelEdge.value);
+                const leads = c.triangle >= 0 || c.hinge >= 0;
                 return (
-                    <button key={c.key} type="button" title={`${c.title}: ${c.answer}. ${c.limit}`} onClick={() => show(c.triangle, c.hinge)}>
+                    <button key={c.key} type="button" data-check={c.key} aria-disabled={!leads} title={`${c.title}: ${c.answer}. ${c.limit}${leads ? ". Show the place" : ""}`} onClick={() => show(c)}>
                         <span class="q">{w.question}</span>
                         <span class="answer"><Icon name={severityIcon[c.severity]} size={16} class={`icon ${severityClass[c.severity]}`} /><span>{w.answer}</span></span>
                         <span class="l">{w.limit}</span>

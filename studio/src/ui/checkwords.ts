@@ -13,12 +13,12 @@ const capital = (s: string) => s.charAt(0).toUpperCase() + s.slice(1);
 /** `edge` is the panel edge L in the document's unit. */
 export function checkWords(c: Check, unit: LengthUnit, edge: number): CheckWords {
     const v = c.value;
-    const limit = capital(c.limit.replace(/ deg\b/, "°").replace(/^([\d.]+) L\b/, (_, n: string) => `Limit ${length(Number(n) * edge, unit)}`).replace(/^([\d.e-]+) (mm|cm|m)$/, (_, n: string, u: string) => `Limit ${length(Number(n), u as LengthUnit)}`));
+    const limit = capital(c.limit.replace(/ on \d+ panels off the rim/, "").replace(/ deg\b/, "°").replace(/^([\d.]+) L\b/, (_, n: string) => `Limit ${length(Number(n) * edge, unit)}`).replace(/^([\d.e-]+) (mm|cm|m)$/, (_, n: string, u: string) => `Limit ${length(Number(n), u as LengthUnit)}`));
     const words = (question: string, answer: string | null): CheckWords => ({ question, answer: answer ?? capital(c.answer), limit });
     switch (c.key) {
         case "scale": return words("Scale factor λ", null);
         case "mouth": return words("Smallest mouth", v === null ? null : `${number((v * 180) / Math.PI, 1)}°`);
-        case "overlap": return words("Overlaps", v === 0 ? "None" : null);
+        case "overlap": return words("Collisions", v === 0 ? "None" : null);
         case "curvature": return words("Bulges outward", v === 0 ? "Everywhere" : v === null ? null : `Not on ${number(100 * v, v < 0.1 ? 1 : 0)} %`);
         case "rim": return words("Rim and constraints", v === null ? null : v < 1e-9 ? "Exactly met" : `${length(v, unit)} off`);
         case "match": return words("Simulated to design", v === null ? null : `${length(v * edge, unit)} rms`);

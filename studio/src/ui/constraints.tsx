@@ -1,6 +1,6 @@
 // What holds the shell, and how far each is from being met.
 import { apply, documentState, operatorNamed, readOnly } from "../state/session";
-import { selectHinges } from "../state/selection";
+import { selectHinges, show } from "../state/selection";
 import { toolId } from "../tools/tool";
 import type { Held } from "../protocol/types";
 import { Button, Section, Tool } from "./controls";
@@ -26,7 +26,7 @@ export function Constraints() {
                         <button type="button" class="link plain ellipsis" title={`${words[held.kind] ?? held.kind}, ${held.hinges.length} hinges: select them`} onClick={() => selectHinges(held.hinges)}>
                             {words[held.kind] ?? held.kind}{held.name && !rim ? ` “${held.name}”` : held.curve && rim ? ` (${held.curve.kind})` : ""}{held.weight !== null && held.weight !== 1 ? `, weight ${number(held.weight, 1)}` : ""}
                         </button>
-                        <b class={off ? "warning" : ""} style={{ fontWeight: 600 }}>{length(held.residual, unit)}</b>
+                        <button type="button" class={`link plain ${off ? "warning" : ""}`} style={{ fontWeight: 600 }} title="Show where it is furthest off" onClick={() => show({ triangle: -1, hinge: held.hinge })}>{length(held.residual, unit)}</button>
                         {!rim && release && readOnly.value === null ? <Tool small icon="close" name={`Release ${held.name}`} onClick={() => void apply({ op: "release", name: held.name })} /> : <span />}
                     </div>
                 );

@@ -184,7 +184,7 @@ export function TableDialog() {
                                 <tr key={r.panel} aria-rowindex={first + k + 2} aria-selected={selected.value.has(r.panel)} style={{ height: `${height}px` }}>
                                     <td><button type="button" aria-pressed={selected.value.has(r.panel)} onClick={(e) => {
                                         select([r.panel], e.shiftKey || e.ctrlKey ? (selected.value.has(r.panel) ? "remove" : "add") : "replace");
-                                        show(r.panel, -1);
+                                        show({ triangle: r.panel, hinge: -1 });
                                     }}>{r.name}</button></td>
                                     {columns.slice(1).map((c) => <td key={c.key}>{number(r[c.key] as number, c.digits)}</td>)}
                                 </tr>

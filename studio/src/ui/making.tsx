@@ -1,6 +1,8 @@
 // What cut files are made for: joint, material, sheet and machine, drawn from what the server says it knows, and what comes of it.
 import type { Making, Plan } from "../protocol/types";
-import { hello } from "../state/session";
+import { show } from "../state/selection";
+import { currentShell, hello } from "../state/session";
+import { dialog } from "../state/view";
 import { Choice, NumberRow, Row } from "./controls";
 import { count, number, plural } from "./format";
 
@@ -29,6 +31,7 @@ export function cutWords(o: CutOptions): Record<string, string | number> {
 const capital = (word: string) => word.charAt(0).toUpperCase() + word.slice(1);
 /** "living-hinge" is "Living hinge", "plywood-3" is "Plywood 3". */
 const title = (name: string) => capital(name).replaceAll("-", " ");
+const whenWords = { flat: "Flat", deployed: "Deployed", simulated: "Simulated", between: "On the way", turning: "Turning" };
 const none: Making = { joints: [], materials: [], sheets: [], profiles: [] };
 
 export function CutSettings({ value, onChange }: { value: CutOptions; onChange(value: CutOptions): void }) {
@@ -67,7 +70,24 @@ export function PlanFigures({ plan }: { plan: Plan }) {
     return (
         <>
             <table class="figures"><tbody>{rows.map(([name, figure]) => <tr key={name}><th scope="row">{name}</th><td>{figure}</td></tr>)}</tbody></table>
-            {plan.clashes > 0 && <p class="note bad" role="alert">{plural(plan.clashes, "pair")} of panels meet on the way from flat to open. Take a smaller joint, or more distance.</p>}
+            {plan.clashes > 0 && (
+                <>
+                    <p class="note bad" role="alert">{plural(plan.clashes, "pair")} of panels meet on the way from flat to open. Take a smaller joint, or more distance.</p>
+                    <table class="figures lined">
+                        <thead><tr><th scope="col">Panels</th><th scope="col">When</th><th scope="col">Overlap</th></tr></thead>
+                        <tbody>
+                            {plan.collisions.slice(0, 12).map((c) => (
+                                <tr key={`${c.panels} ${c.when}`}>
+                                    <th scope="row"><button type="button" class="link" title="Show them" onClick={() => ((dialog.value = null), show({ triangle: c.panels[0], other: c.panels[1], hinge: c.hinge }))}>{c.panels.map((t) => currentShell()?.name(t) ?? t).join(", ")}</button></th>
+                                    <td>{whenWords[c.when]}{c.when === "between" && c.opening !== null ? `, ${number(100 * c.opening, 0)} % open` : ""}</td>
+                                    <td>{c.overlap === null ? "" : `${number(c.overlap, 1)} mm`}</td>
+                                </tr>
+                            ))}
+                        </tbody>
+                    </table>
+                    {plan.clashes > 12 && <p class="muted">and {count(plan.clashes - 12)} more</p>}
+                </>
+            )}
         </>
     );
 }

@@ -11,7 +11,7 @@ import { Icon } from "./icons";
 
 const edgeOf = (name: string) => {
     const shell = looks.value[name]?.shell;
-    return shell ? medianEdge(shell.linkage, shell.flat) : panelEdge();
+    return shell ? medianEdge(shell.linkage, shell.flat) : panelEdge.value;
 };
 
 function nextName(): string {
