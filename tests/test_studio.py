@@ -238,7 +238,8 @@ class Protocol(StudioCase):
         flat, triangles = page.state["flat"], page.state["triangles"]
 
         def corners(t):
-            return [complex(flat[2 * h], flat[2 * h + 1]) for h in triangles[3 * t:3 * t + 3]]
+            a, b, c = (complex(flat[2 * h], flat[2 * h + 1]) for h in triangles[3 * t:3 * t + 3])
+            return (a, b, c) if ((b - a).conjugate() * (c - a)).imag > 0 else (a, c, b)  # some are turned over
 
         def apart(a, b):  # an edge of one has the other beyond it
             return any(all(((b[k] - b[k - 1]).conjugate() * (p - b[k - 1])).imag < 1e-9 for p in a) for k in range(3))
