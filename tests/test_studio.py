@@ -532,6 +532,48 @@ class Documents(StudioCase):
         self.assertTrue(all(0 <= progress["fraction"] <= 1 for progress in heard))
         page.until(lambda: page.events.get("progress", {}).get("done"))
 
+    def test_whoever_waits_for_a_document_sees_it_being_made(self):
+        studio = self.start()
+        page = self.page(studio)
+        page.rest()
+        old, before, topology = page.events["document"]["id"], dict(page.state), page.events["linkage"]["topology"]
+        steps = [dict(DOME[0], triangles=2000), *DOME[1:]]
+
+        def making():  # its linkage and states come, while the document is still the old one
+            page.number += 1
+            page.tell("new", id=page.number, recipe=steps)
+            heights = []
+            while len(heights) < 6 or len({round(h, 3) for h in heights}) < 3:
+                message = page.read()
+                self.assertNotIn("ok", message if isinstance(message, dict) and message.get("re") == page.number else {}, "it was made unseen")
+                if not isinstance(message, dict) and message.kind == 1 and page.events["linkage"]["document"] != old:
+                    heights.append(max((page.state["simulated"] or page.state["deployed"])[2::3]))
+                    self.assertFalse(message.flags & SETTLED)
+            self.assertEqual(page.events["document"]["id"], old)
+            self.assertNotEqual(page.events["linkage"]["document"], old)
+            return page.number
+
+        number = making()
+        self.agree(page.ask("cancel"))
+        refused = lambda message: isinstance(message, dict) and message.get("re") == number and message.get("ok") is False
+        while not refused(page.read()):
+            pass
+        page.until(lambda: page.events["linkage"]["document"] == old and page.state["flat"] == before["flat"])
+        self.assertEqual({name for name in before if page.state[name] != before[name]}, set())
+        self.assertEqual(page.events["linkage"]["topology"], topology)
+        self.agree(page.ask("apply", operator=STROKE))  # and it goes on
+
+        number = making()
+        self.disagree("usage", "made", page.ask("close"))
+        while True:
+            message = page.read()
+            if isinstance(message, dict) and message.get("re") == number and "ok" in message:
+                break
+        self.assertTrue(message["ok"], message)
+        self.assertEqual(page.events["document"]["id"], message["document"])
+        page.rest()
+        self.assertGreater(len(page.state["triangles"]), 3 * 1500)
+
 
 class Surfaces(StudioCase):
     def test_a_mesh_is_checked_shown_and_designed(self):

@@ -719,7 +719,13 @@ static ax_status create(const char* path, const char* program, const char* folde
 
 static ax_status fill_from_recipe(ax_session* s, const void* context, const ax_progress* progress, ax_error* error)
 {
-    return play_start(s, context, progress, error);
+    const ax_session_start* start = context;
+    if (start->session)
+        *start->session = s;
+    ax_status status = play_start(s, start, progress, error);
+    if (start->session)
+        *start->session = NULL;
+    return status;
 }
 
 ax_status ax_session_create(const char* path, const ax_session_start* start, const ax_progress* progress,

@@ -262,7 +262,8 @@ static void post_status(desk* d, const char* solver)
         fmax(isnan(r->deployed_error) ? 0 : r->deployed_error, isnan(r->simulated_error) ? 0 : r->simulated_error);
     char words[96];
     if (d->moving || d->busy)
-        snprintf(words, sizeof words, "Solving, edges within %.0e", residual);
+        residual > 0 ? snprintf(words, sizeof words, "Solving, edges within %.0e", residual)
+                     : snprintf(words, sizeof words, "Solving");
     else if (exact)
         snprintf(words, sizeof words, "Exact");
     else if (d->settle_time > 0)
@@ -347,7 +348,10 @@ static bool report_progress(void* context, const char* stage, double fraction, d
     double now = ax_seconds();
     if (desk_form(d) && !d->live_shown && now - d->published >= frame_seconds) {
         publish(d, now - d->measured > rest_seconds);
-        d->rested = false; // it was shown as moving
+        d->rested = false;                          // it was shown as moving
+        if (!d->opened && d->opener && !d->watched) // once: who looks at something else meanwhile is left alone
+            hub_show_making(d->hub, d->opener, d);
+        d->watched = true;
     }
     if (now - d->job_start > progress_seconds && now - d->progressed > 0.1) {
         d->progressed = now;
@@ -729,6 +733,8 @@ static void* work(void* context)
         show_rest(d);
         show_document(d);
     }
+    if (status != AX_OK && d->opener)
+        hub_show_before(d->hub, d->opener, d);
     hub_lock(d->hub);
     d->opened = status == AX_OK;
     d->fault = error;

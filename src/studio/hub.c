@@ -15,6 +15,7 @@ struct hub_client {
     int number;
     desk* shown;
     desk* opening; // a document this client waits for
+    desk* before;  // shown before that one, whose states are seen while it is made
     parcel *first, **last;
     size_t queued; // bytes
     int waiting;   // commands without an answer yet
@@ -201,15 +202,8 @@ bool hub_send(hub* h, int number, unsigned char* block, size_t size, const bool*
     return sent;
 }
 
-void hub_show(hub* h, int number, desk* d)
+static void show(hub_client* c, desk* d)
 {
-    hub_client* c = find_client(h, number);
-    if (!c)
-        return;
-    if (c->shown && c->shown != d)
-        desk_client_gone(c->shown, number);
-    if (c->opening == d)
-        c->opening = NULL;
     c->shown = d;
     c->stamp = c->topology = 0;
     c->under_way = 0;
@@ -219,6 +213,53 @@ void hub_show(hub* h, int number, desk* d)
     else
         desk_event(d, SLOT_PROGRESS, &c->events[SLOT_PROGRESS]); // of work that may be long done
     c->opening_progress = 0;
+}
+
+void hub_show(hub* h, int number, desk* d)
+{
+    hub_client* c = find_client(h, number);
+    if (!c)
+        return;
+    if (c->shown && c->shown != d)
+        desk_client_gone(c->shown, number);
+    c->before = NULL;
+    if (c->opening == d) {
+        c->opening = NULL;
+        if (c->shown == d) // its states were seen while it was made
+            return;
+    }
+    show(c, d);
+}
+
+void hub_show_making(hub* h, int number, desk* d)
+{
+    hub_lock(h);
+    hub_client* c = find_client(h, number);
+    if (c && c->opening == d && c->shown != d) {
+        desk* before = c->shown;
+        if (before)
+            desk_client_gone(before, number);
+        show(c, d);
+        c->before = before;
+    }
+    hub_unlock(h);
+    hub_wake(h);
+}
+
+void hub_show_before(hub* h, int number, desk* d)
+{
+    hub_lock(h);
+    hub_client* c = find_client(h, number);
+    if (c && c->opening == d)
+        c->opening = NULL;
+    if (c && c->shown == d) {
+        c->shown = NULL;
+        if (c->before)
+            show(c, c->before);
+        c->before = NULL;
+    }
+    hub_unlock(h);
+    hub_wake(h);
 }
 
 void hub_say_bye(hub* h, const char* words)
@@ -254,7 +295,7 @@ static bool next_event(hub* h, hub_client* c, parcel* out)
 static bool next_progress(hub* h, hub_client* c, parcel* out)
 {
     unsigned number = 0;
-    const char* text = c->opening ? desk_event(c->opening, SLOT_PROGRESS, &number) : NULL;
+    const char* text = c->opening && c->opening != c->shown ? desk_event(c->opening, SLOT_PROGRESS, &number) : NULL;
     if (!text || number == c->opening_progress)
         return false;
     if (out) {
@@ -342,7 +383,7 @@ static desk* find_desk(const hub* h, const char* id)
 static bool is_shown(const hub* h, const desk* d)
 {
     for (int k = 0; k < CLIENTS_MOST; ++k)
-        if (h->clients[k] && (h->clients[k]->shown == d || h->clients[k]->opening == d))
+        if (h->clients[k] && (h->clients[k]->shown == d || h->clients[k]->opening == d || h->clients[k]->before == d))
             return true;
     return false;
 }
@@ -361,6 +402,8 @@ static void reap(hub* h)
                 c->shown = NULL;
             if (c && c->opening == d)
                 c->opening = NULL;
+            if (c && c->before == d)
+                c->before = NULL;
         }
         hub_unlock(h);
         desk_close(d, false);
@@ -561,6 +604,8 @@ static ax_status close_document(hub* h, hub_client* c, const message* m, ax_erro
     desk* d = c->shown;
     if (status == AX_OK && !d)
         status = ax_fail(error, AX_USAGE, "close: no document is shown.");
+    if (status == AX_OK && d == c->opening)
+        status = ax_fail(error, AX_USAGE, "close: the document is being made: cancel that.");
     if (status != AX_OK)
         return status;
     json_t* event =
@@ -570,6 +615,8 @@ static ax_status close_document(hub* h, hub_client* c, const message* m, ax_erro
             h->desks[k] = NULL;
     for (int k = 0; k < CLIENTS_MOST; ++k) {
         hub_client* other = h->clients[k];
+        if (other && other->before == d)
+            other->before = NULL;
         if (!other || other->shown != d)
             continue;
         other->shown = NULL;

@@ -65,6 +65,9 @@ size_t hub_before(const hub* h);
 bool hub_send(hub* h, int client, unsigned char* block, size_t size, const bool* give_up);
 // The client shows this desk from now on; with the lock held.
 void hub_show(hub* h, int client, desk* d);
+// The client that waits for this desk sees its states while it is made, and what it saw before if nothing comes of it.
+void hub_show_making(hub* h, int client, desk* d);
+void hub_show_before(hub* h, int client, desk* d);
 // A document has another id from now on; with the lock held.
 void hub_renamed(hub* h, const char* old, const char* id);
 json_t* hub_problem(const ax_error* error);

@@ -58,6 +58,7 @@ struct desk {
     ax_form* live;              // what the hand pulls about, a copy of the session's form
     double* live_scale;         // its prescribed factors before the gesture
     char* live_op;              // the operator that is being previewed
+    bool watched;               // it was shown while it was made
     bool live_fresh, live_shown, previewing, holding, moving, busy, rested, was_exact;
     unsigned hand_serial;
     int hand_of_serial;

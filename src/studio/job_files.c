@@ -330,9 +330,15 @@ static bool ends_in(const char* text, const char* ending)
 static ax_status create(desk* d, const ax_recipe* recipe, ax_error* error)
 {
     const ax_progress progress = desk_progress(d);
-    const ax_session_start start = {
-        .recipe = recipe, .until = -1, .folder = d->folder, .program = program, .keep = AX_KEEP_BEFORE_ANY};
-    ax_status status = ax_session_create(d->path, &start, &progress, &d->session, error);
+    const ax_session_start start = {.recipe = recipe,
+                                    .until = -1,
+                                    .folder = d->folder,
+                                    .program = program,
+                                    .session = &d->session,
+                                    .keep = AX_KEEP_BEFORE_ANY};
+    ax_session* made = NULL;
+    ax_status status = ax_session_create(d->path, &start, &progress, &made, error);
+    d->session = made;
     const ax_moment* moments;
     int now;
     if (status == AX_OK)

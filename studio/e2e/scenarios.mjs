@@ -152,12 +152,46 @@ export const scenarios = {
             assert.ok(await picture.evaluate((e) => e.complete && e.naturalWidth > 100), "the verdict comes with a picture");
             await dialog.getByLabel("Panels", { exact: true }).fill("240");
             await hand.page.keyboard.press("Enter");
+            await hand.page.evaluate(() => {
+                window.seen = 0; // states of what is being made, of another linkage than the old one's
+                const before = auxshell.shell().linkage.panels;
+                const settled = auxshell.stage.value.onBefore;
+                auxshell.stage.value.onBefore = () => {
+                    window.seen += auxshell.session.making.value && auxshell.shell().linkage.panels !== before;
+                    settled();
+                };
+            });
             await dialog.getByRole("button", { name: "Design it" }).click();
             await hand.page.waitForFunction(() => auxshell.session.documentState.value?.steps[0].operator.op === "start_target", null, { timeout: 120000 });
             await hand.rest();
             const f = await hand.figures();
             assert.ok(f.panels > 180 && f.panels < 320, `${f.panels} panels`);
+            assert.ok(await hand.page.evaluate(() => window.seen) >= 2, "it was watched while it was made");
+            assert.equal(await dialog.count(), 0, "with nothing in the way");
             assert.ok(f.least >= 1 - 1e-3 && f.most <= 2 + 1e-3, `lambda ${f.least} to ${f.most}`);
+        });
+    },
+
+    async "what is being made is watched, and cancelled: the old one is there again"(browser) {
+        await withStudio(browser, [circle], async (hand) => {
+            const { page } = hand;
+            const before = await hand.places();
+            const heights = await page.evaluate(async (operators) => {
+                const seen = [];
+                const stop = auxshell.session.onShell((shell) => {
+                    if (auxshell.session.making.value && shell.deployed.length) seen.push(Math.max(...(shell.simulated ?? shell.deployed).filter((_, k) => k % 3 === 2)));
+                    if (new Set(seen.map((h) => h.toFixed(2))).size === 4) auxshell.session.tell("cancel");
+                });
+                window.answer = await auxshell.session.command("new", { recipe: operators });
+                stop();
+                return seen;
+            }, [{ ...circle, triangles: 1500 }, ...bowl.slice(1)]);
+            assert.equal(await page.evaluate(() => window.answer), null);
+            assert.ok(heights.length >= 4, `${heights.length} states were seen`);
+            await page.waitForFunction(() => !auxshell.session.making.value);
+            await hand.rest();
+            assert.deepEqual(await hand.places(), before);
+            assert.equal(await page.getByRole("button", { name: "Cancel" }).count(), 0);
         });
     },
 

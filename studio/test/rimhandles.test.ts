@@ -38,4 +38,22 @@ describe("handles of a boundary", () => {
         const spline = handlesOf(schema(field("points", "points")), { points: [[0, 0, 0], [1, 0, 0], [1, 1, 0]] }, 5)!;
         expect(spline.move(1, [2, 0, 0])).toEqual({ points: [[0, 0, 0], [2, 0, 0], [1, 1, 0]] });
     });
+    it("are drawn with the curve that the solver takes: corners rounded, as far as there is room, and splines through their points", () => {
+        const rectangle = schema(field("width", "number"), field("height", "number"), field("fillet", "number", 0), centre);
+        const { curve } = handlesOf(rectangle, { width: 6, height: 4, fillet: 1 }, 5)!;
+        for (const [x, y] of curve) {
+            const [u, v] = [Math.max(0, Math.abs(x) - 2), Math.max(0, Math.abs(y) - 1)];
+            expect(u && v ? Math.hypot(u, v) : Math.max(u, v)).toBeCloseTo(1, 9); // on the sides or on the arcs
+        }
+        const most = handlesOf(rectangle, { width: 6, height: 4, fillet: 9 }, 5)!.curve;
+        expect(Math.max(...most.map((p) => Math.hypot(p[0] - 1, p[1])).filter((_, k) => most[k][0] > 1))).toBeCloseTo(2, 9);
+        expect(handlesOf(rectangle, { width: 6, height: 4 }, 5)!.curve).toHaveLength(4);
+
+        const points: Place[] = [[2, 0, 0], [0, 2, 0], [-2, 0, 0], [0, -2, 0]];
+        const spline = handlesOf({ ...schema(field("points", "points")), name: "rim_spline" } as OperatorSchema, { points }, 5)!.curve;
+        for (const p of points) expect(Math.min(...spline.map((q) => Math.hypot(q[0] - p[0], q[1] - p[1])))).toBeLessThan(1e-12);
+        // round a square of points it keeps near the circle
+        expect(Math.max(...spline.map((p) => Math.hypot(...p)))).toBeCloseTo(2, 9);
+        expect(Math.min(...spline.map((p) => Math.hypot(...p)))).toBeGreaterThan(1.7);
+    });
 });

@@ -23,6 +23,8 @@ export const progress = signal<ProgressEvent | null>(null);
 /** The last thing that went wrong, shown beside its cause until dismissed or superseded. */
 export const problem = signal<{ error: Problem; about: string } | null>(null);
 export const closedMessage = signal<string | null>(null);
+/** States are shown of a document that is still being made. */
+export const making = signal(false);
 
 /** The shell itself is no signal: it changes 60 times a second. `topology` rises with every linkage, `revision`
  *  with every frame. */
@@ -109,11 +111,15 @@ function receive(event: ServerEvent): void {
             break;
         case "document":
             remember(event.id);
+            making.value = false;
             documentState.value = event;
             break;
         case "linkage":
-            if (event.variant === undefined) announced = event;
-            else announcedVariant = event;
+            if (event.variant !== undefined) announcedVariant = event;
+            else {
+                announced = event;
+                making.value = documentState.value !== null && event.document !== documentState.value.id;
+            }
             break;
         case "status":
             status.value = event;

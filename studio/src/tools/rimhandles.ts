@@ -1,8 +1,10 @@
 // The handles of a boundary: places that stand for its operator's fields, whatever curve it is. Dragging one gives the fields anew.
 import type { FieldSchema, OperatorSchema } from "../protocol/types";
 import { type Arguments, valueOf } from "./calls";
+import { roundedCurve, splineCurve } from "./curves";
+import { type Place, add, cross, dot, size, unit } from "./vectors";
 
-export type Place = [number, number, number];
+export type { Place };
 export interface Handles {
     points: Place[];
     names: string[];
@@ -12,14 +14,6 @@ export interface Handles {
     move(k: number, to: Place): Arguments;
 }
 
-const add = (p: Place, q: Place, s = 1): Place => [p[0] + s * q[0], p[1] + s * q[1], p[2] + s * q[2]];
-const dot = (p: Place, q: Place) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-const cross = (p: Place, q: Place): Place => [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
-const size = (p: Place) => Math.hypot(...p);
-const unit = (p: Place): Place => {
-    const l = size(p) || 1;
-    return [p[0] / l, p[1] / l, p[2] / l];
-};
 const round = (a: Place, b: Place, centre: Place, n = 64): Place[] =>
     Array.from({ length: n }, (_, k) => add(add(centre, a, Math.cos((2 * Math.PI * k) / n)), b, Math.sin((2 * Math.PI * k) / n)));
 
@@ -37,7 +31,8 @@ export function handlesOf(schema: OperatorSchema, args: Arguments, reach: number
     if (listed) {
         const points = (args[listed.name] as Place[] | undefined) ?? [];
         const closed = valueOf(args, field("closed") ?? listed) !== false;
-        return points.length ? { points, names: points.map((_, k) => `Point ${k + 1}`), curve: points, closed, move: (k, to) => ({ [listed.name]: points.map((p, j) => (j === k ? to : p)) }) } : null;
+        const curve = schema.name.endsWith("spline") ? splineCurve(points, closed) : roundedCurve(points, closed, figure("fillet") ?? 0);
+        return points.length ? { points, names: points.map((_, k) => `Point ${k + 1}`), curve, closed, move: (k, to) => ({ [listed.name]: points.map((p, j) => (j === k ? to : p)) }) } : null;
     }
     const centre = place("centre");
     const radius = figure("radius");
@@ -68,7 +63,8 @@ export function handlesOf(schema: OperatorSchema, args: Arguments, reach: number
         const y: Place = [-Math.sin(turn), Math.cos(turn), 0];
         const corner = (i: number, j: number) => add(add(centre, x, (i * width) / 2), y, (j * height) / 2);
         return {
-            points: [centre, corner(1, 1)], names: ["Centre", "Corner"], curve: [corner(1, 1), corner(-1, 1), corner(-1, -1), corner(1, -1)], closed: true,
+            points: [centre, corner(1, 1)], names: ["Centre", "Corner"], closed: true,
+            curve: roundedCurve([corner(1, 1), corner(-1, 1), corner(-1, -1), corner(1, -1)], true, figure("fillet") ?? 0),
             move: (k, to) => (k === 0 ? { centre: to } : { width: 2 * Math.abs(dot(add(to, centre, -1), x)), height: 2 * Math.abs(dot(add(to, centre, -1), y)) }),
         };
     }

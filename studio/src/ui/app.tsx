@@ -1,7 +1,7 @@
-import { useSignal } from "@preact/signals";
+import { effect, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { announcement } from "../state/commands";
-import { closedMessage, connection, documentState, problem, report, status, command } from "../state/session";
+import { closedMessage, command, connection, documentState, making, problem, progress, report, status, tell } from "../state/session";
 import { darkTheme, tourSeen } from "../state/settings";
 import { dialog, mode, page, tourStep } from "../state/view";
 import { Bar } from "./bar";
@@ -9,6 +9,7 @@ import { Checks } from "./checks";
 import { Button, Tool } from "./controls";
 import { OpenDialog, SaveDialog, ShortcutsDialog, TableDialog } from "./dialogs";
 import { ExportDialog } from "./export";
+import { number } from "./format";
 import { Icon } from "./icons";
 import { Inspector } from "./inspector";
 import { Rail } from "./rail";
@@ -54,6 +55,13 @@ export function App() {
             window.removeEventListener("drop", drop);
         };
     }, []);
+    // what is being made is watched
+    useEffect(() => effect(() => {
+        if (!making.value) return;
+        page.value = "work";
+        dialog.value = null;
+        if (mode.peek() === "variants") mode.value = "design";
+    }), []);
     return (
         <>
             {page.value === "start" ? <StartPage /> : (
@@ -86,6 +94,8 @@ export function App() {
 
 /** What went wrong, over the views that still show the last good state. */
 function Banner() {
+    if (making.value)
+        return <div class="note banner float" role="status"><i class="ring" /><span class="grow">{progress.value ? `${progress.value.stage || "Solving"}, ${number(100 * progress.value.fraction, 0)} %` : "Solving"}</span><Button small onClick={() => tell("cancel")}>Cancel</Button></div>;
     const p = problem.value;
     const dismiss = <Tool small icon="close" name="Dismiss" onClick={() => (problem.value = null)} />;
     if (closedMessage.value)

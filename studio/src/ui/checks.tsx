@@ -1,6 +1,6 @@
 // "Can it deploy?", always in sight: a verdict and what it hangs on. A check leads to its place.
 import { show } from "../state/selection";
-import { documentState, panelEdge, report, status } from "../state/session";
+import { documentState, making, panelEdge, report, status } from "../state/session";
 import { drawerOpen, mode } from "../state/view";
 import type { Check } from "../protocol/types";
 import { severityClass, severityIcon } from "./controls";
@@ -23,7 +23,7 @@ function shownChecks(all: Check[]): Check[] {
 }
 
 export function Checks() {
-    const r = report.value;
+    const r = making.value ? null : report.value;
     const busy = status.value !== null && status.value.solver !== "idle";
     if (!r) return <section class="checks" aria-label="Can it deploy?"><div class="verdict"><span class="q">Can it deploy?</span><span class="answer muted">Not known yet</span></div></section>;
     const failed = r.checks.filter((c) => c.severity === "failure").length;

@@ -10,7 +10,7 @@ import { type Gesture, gestureOf, wheelOf } from "../scene/navigation";
 import { type Rect, Stage, type View, type ViewId } from "../scene/stage";
 import { division, layout, narrow, navigation } from "../state/settings";
 import { hovered, hoveredHinge } from "../state/selection";
-import { currentShell, documentState, revision, topology } from "../state/session";
+import { currentShell, documentState, making, revision, topology } from "../state/session";
 import { dialog, mode, stage as stageSignal } from "../state/view";
 import { handMoved } from "../state/latency";
 import { motion } from "../state/motion";
@@ -313,7 +313,7 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
         place.setPointerCapture(event.pointerId);
         stage.hold(true);
         if (kind) gesture = { kind, view, ...at, id: event.pointerId };
-        else if (event.button === 0) {
+        else if (event.button === 0 && !making.value) {
             const double = event.timeStamp - lastDown < 350;
             lastDown = event.timeStamp;
             const hit = hitOf(event, view, double);
