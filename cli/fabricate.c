@@ -86,7 +86,8 @@ static void print_clearance(const ax_cut_plan* p, FILE* out)
     static const char* const frames[] = {"flat", "deployed", "simulated"};
     char states[64] = "";
     if (p->frames_checked)
-        snprintf(states, sizeof states, " flat, open and in %d states between", p->frames_checked);
+        snprintf(states, sizeof states, " flat, open and in %d %sstates between", p->frames_checked,
+                 p->simulated_way ? "simulated " : "");
     double least = INFINITY;
     for (int i = 0; i < p->hinge_count; ++i)
         if (!isnan(p->hinges[i].clearance))

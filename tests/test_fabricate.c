@@ -526,6 +526,7 @@ static void clearance_is_what_turning_the_panels_finds(void** state)
     static const char* const joints[] = {"ring", "ring:ring=24,gap=0.5", "none:inset=1,corner=4", "none:inset=0.5"};
     for (int j = 0; j < 4; ++j) {
         ax_fabricate_options o = choose(joints[j], "plywood-3", NULL, 0);
+        o.frames = 0;
         ax_cut_plan plan = make(&sample, &o);
         assert_int_equal(plan.clashes_found, 0);
         for (int i = 0; i < plan.hinge_count; i += 7) {
@@ -603,37 +604,77 @@ static double extent(const double (*places)[3])
     return sqrt(sum / n);
 }
 
-static void a_linkage_stays_rigid_on_its_way_and_opens(void** state)
+// By one and by two threads; calls `each` with every tenth of the way.
+static void go(const ax_design* design, void (*each)(void* context, int k, const ax_way_state* s), void* context)
 {
-    (void)state;
-    size_t n = (size_t)sample.linkage.hinge_count;
-    double(*one)[3] = calloc(n, sizeof *one), (*two)[3] = calloc(n, sizeof *two), before = 0, error;
-    for (size_t h = 0; h < n; ++h)
-        memcpy(one[h], sample.flat[h], sizeof *sample.flat);
-    before = extent((const double(*)[3])one);
     ax_pool *alone = ax_pool_make(1), *pair = ax_pool_make(2);
-    ax_way *first = ax_way_make(&sample, alone), *second = ax_way_make(&sample, pair);
-    double start = before, middle = 0;
-    for (int k = 1; k < 10; ++k) {
-        assert_true(ax_way_at(first, k / 10.0, NULL, one, &error));
-        assert_near(error, largest_edge_error((const double(*)[3])one), 1e-12);
-        assert_at_most(error, 1e-3);
-        assert_true(ax_way_at(second, k / 10.0, NULL, two, &error));
-        assert_memory_equal(one, two, n * sizeof *one); // the same bits by any number of threads
-        double now = extent((const double(*)[3])one);
-        assert_true(now > before);
-        before = now;
-        middle = k == 5 ? now : middle;
+    ax_way *first = ax_way_make(design, alone), *second = ax_way_make(design, pair);
+    for (int k = 1; k <= 10; ++k) {
+        ax_way_state one, two;
+        assert_true(ax_way_at(first, k / 10.0, NULL, &one));
+        assert_near(one.error, largest_edge_error(one.places), 1e-12);
+        assert_at_most(one.error, 1e-3);
+        assert_true(ax_way_at(second, k / 10.0, NULL, &two));
+        assert_memory_equal(one.places, two.places, (size_t)design->linkage.hinge_count * sizeof *one.places);
+        each(context, k, &one);
     }
-    double end = extent((const double(*)[3])sample.simulated);
-    assert_true(before < end);
-    assert_near((middle - start) / (end - start), 0.5, 0.1);
     ax_way_free(first);
     ax_way_free(second);
     ax_pool_free(alone);
     ax_pool_free(pair);
-    free(one);
-    free(two);
+}
+
+static void note_extent(void* context, int k, const ax_way_state* s)
+{
+    double* extents = context;
+    assert_near(s->strain, 0, 0); // nothing is simulated
+    extents[k] = extent(s->places);
+}
+
+static void without_a_load_the_way_is_straight(void** state)
+{
+    (void)state;
+    ax_design bare = sample;
+    bare.simulated = NULL;
+    double(*flat)[3] = calloc((size_t)sample.linkage.hinge_count, sizeof *flat), extents[11];
+    for (int h = 0; h < sample.linkage.hinge_count; ++h)
+        memcpy(flat[h], sample.flat[h], sizeof *sample.flat);
+    extents[0] = extent((const double(*)[3])flat);
+    go(&bare, note_extent, extents);
+    for (int k = 1; k <= 10; ++k)
+        assert_true(extents[k] > extents[k - 1]);
+    assert_near(extents[10], extent((const double(*)[3])sample.deployed), 5e-3 * extents[10]);
+    assert_near((extents[5] - extents[0]) / (extents[10] - extents[0]), 0.5, 0.1);
+    free(flat);
+}
+
+static double farthest(const double (*a)[3], const double (*b)[3])
+{
+    double most = 0;
+    for (int h = 0; h < sample.linkage.hinge_count; ++h)
+        most = fmax(most, ax_distance3(a[h], b[h]));
+    return most / sample.report.edge_mean;
+}
+
+static void note_distance(void* context, int k, const ax_way_state* s)
+{
+    double* to_end = context;
+    to_end[k] = farthest(s->places, (const double(*)[3])sample.simulated);
+    assert_true(s->strain > 0 && s->strain < 0.1);
+    assert_true(s->moved > 0 && s->moved < 0.3 * sample.report.edge_mean);
+    for (int h = 0; h < sample.linkage.hinge_count && k >= 8; ++h) // supports have arrived
+        if (sample.supports[h])
+            assert_at_most(ax_distance3(s->places[h], sample.simulated[h]), 0.1 * sample.report.edge_mean);
+}
+
+static void the_simulated_way_ends_in_the_equilibrium(void** state)
+{
+    (void)state;
+    double to_end[11];
+    go(&sample, note_distance, to_end);
+    assert_at_most(to_end[10], 0.05);
+    for (int k = 2; k <= 8; ++k)
+        assert_true(to_end[k] < to_end[k - 1]);
 }
 
 // Whether a point of panel `a`, `inset` mm within its edges and anywhere in its thickness, lies as deep within panel `b`; mm.
@@ -686,12 +727,18 @@ static void thick_panels_that_collide_on_the_way_are_named(void** state)
     ax_cut_plan plan = make(&sample, &o);
     assert_int_equal(plan.frames_checked, 7);
     assert_true(plan.clashes_found > 0 && plan.frame_error > 0 && plan.frame_error < 0.5);
-    size_t n = (size_t)sample.linkage.hinge_count;
-    double(*places)[3] = calloc(n, sizeof *places), error;
-    int tried = 0, met = 0;
+    ax_way_state s;
+    int tried = 0, met = 0, counted = 0;
     ax_way* way = ax_way_make(&sample, NULL);
     for (int k = 1; k <= 7; ++k) {
-        ax_way_at(way, k / 8.0, NULL, places, &error);
+        assert_true(ax_way_at(way, k / 8.0, NULL, &s));
+        const ax_cut_frame* frame = &plan.frames[k - 1];
+        assert_near(frame->opening, k / 8.0, 0);
+        assert_near(frame->error, s.error, 0);
+        assert_near(frame->strain, s.strain, 0);
+        assert_near(frame->moved, 1000 * s.moved, 1e-9 * frame->moved);
+        assert_true(frame->checked);
+        counted += frame->clashes;
         for (int i = 0; i < plan.clash_count; ++i) {
             const ax_cut_clash* c = &plan.clashes[i];
             assert_int_equal(c->frame, 3); // open, they are apart: nothing but the way tells
@@ -700,14 +747,14 @@ static void thick_panels_that_collide_on_the_way_are_named(void** state)
             if (c->opening != k / 8.0 || c->overlap < 2)
                 continue;
             ++tried;
-            met += points_meet((const double(*)[3])places, c->panels[0], c->panels[1], 3, 40) ||
-                   points_meet((const double(*)[3])places, c->panels[1], c->panels[0], 3, 40);
+            met += points_meet(s.places, c->panels[0], c->panels[1], 3, 40) ||
+                   points_meet(s.places, c->panels[1], c->panels[0], 3, 40);
         }
     }
     assert_true(tried > 0);
     assert_int_equal(met, tried);
+    assert_true(plan.simulated_way && counted >= plan.clashes_found);
     ax_way_free(way);
-    free(places);
     ax_cut_plan_free(&plan);
     o.frames = 0;
     plan = make(&sample, &o);
@@ -952,7 +999,8 @@ int main(void)
         cmocka_unit_test(pieces_fit_their_sheets_and_hold_together),
         cmocka_unit_test(clearance_is_what_turning_the_panels_finds),
         cmocka_unit_test(what_collides_is_named),
-        cmocka_unit_test(a_linkage_stays_rigid_on_its_way_and_opens),
+        cmocka_unit_test(without_a_load_the_way_is_straight),
+        cmocka_unit_test(the_simulated_way_ends_in_the_equilibrium),
         cmocka_unit_test(thick_panels_that_collide_on_the_way_are_named),
         cmocka_unit_test(hinge_forces_stand_beside_what_the_joint_bears),
         cmocka_unit_test(what_does_not_fit_is_refused_by_name),

@@ -55,6 +55,18 @@ static json_t* clashes_json(const ax_cut_plan* p)
     return all;
 }
 
+static json_t* frames_json(const ax_cut_plan* p)
+{
+    json_t* all = json_array();
+    for (int i = 0; i < p->frame_count; ++i) {
+        const ax_cut_frame* f = &p->frames[i];
+        json_array_append_new(all, json_pack("{s:f, s:f, s:f, s:f, s:b, s:i}", "opening", f->opening, "strain",
+                                             f->strain, "moved", f->moved, "error", f->error, "checked", f->checked,
+                                             "clashes", f->clashes));
+    }
+    return all;
+}
+
 static json_t* plan_json(const ax_cut_plan* p)
 {
     json_t *sheets = json_array(), *joint = json_object(), *parts = json_array(), *lengths = json_object();
@@ -69,14 +81,15 @@ static json_t* plan_json(const ax_cut_plan* p)
     for (int k = 0; k < AX_NOTE; ++k)
         json_object_set_new(lengths, ax_operation_name((ax_operation)k), json_number(p->cut_length[k]));
     return json_pack("{s:o, s:s, s:f, s:f, s:s, s:o, s:f, s:i, s:f, s:f, s:f, s:o, s:f, s:f, s:b, s:i, s:i, s:i, s:i, "
-                     "s:f, s:o, s:o}",
+                     "s:f, s:b, s:o, s:o, s:o}",
                      "joint", joint, "material", p->material.name, "thickness", p->material.thickness, "kerf", p->kerf,
                      "profile", p->profile->name, "sheets", sheets, "utilisation", p->utilisation, "panels",
                      p->panel_count, "area_mm2", p->area, "mass_kg", p->mass, "travel_mm", p->travel, "cut_mm", lengths,
                      "seconds", p->seconds, "label_height", p->panel_count ? p->panels[0].label_height : 0, "in_place",
                      p->in_place, "labels_dropped", p->labels_dropped, "seams", p->seam_count, "clashes_found",
-                     p->clashes_found, "frames_checked", p->frames_checked, "frame_error", p->frame_error, "clashes",
-                     clashes_json(p), "hinges", hinges_json(p));
+                     p->clashes_found, "frames_checked", p->frames_checked, "frame_error", p->frame_error,
+                     "simulated_way", p->simulated_way, "frames", frames_json(p), "clashes", clashes_json(p), "hinges",
+                     hinges_json(p));
 }
 
 static ax_status run(const void* given, ax_error* error)

@@ -132,9 +132,20 @@ typedef struct ax_cut_clash {
     int hinge;    // where they meet, -1: they do not
     double angle; // radians, mouth angle at the hinge; NaN for panels that do not meet
     int frame;    // 0 flat, 1 deployed, 2 simulated, 3 between flat and open; -1: turning from flat to open at a hinge
-    double opening; // frame 3: 0 flat, 1 open, where they overlap most; NaN elsewhere
+    double opening; // frame 3: of the ax_cut_frame where they overlap most; NaN elsewhere
     double overlap; // mm
 } ax_cut_clash;
+
+// A state between flat and open in which all panels were held against each other. Of a simulated design it comes from a simulation in
+// time, whose panels are not quite rigid and were made so.
+typedef struct ax_cut_frame {
+    double opening; // 0 flat, 1 open; of a simulation, its time
+    double strain;  // of the simulation: largest relative error of an edge
+    double moved;   // mm, that a hinge of it moved by at most when panels were made rigid
+    double error;   // largest relative error of an edge then
+    bool checked;   // false: panels could not be made rigid within a thousandth
+    int clashes;    // pairs of panels that overlap
+} ax_cut_frame;
 
 // Loose parts to buy.
 typedef struct ax_cut_part {
@@ -155,7 +166,10 @@ typedef struct ax_cut_plan {
     ax_cut_clash* clashes; // at most AX_CLASHES of them are kept; clash_count counts these
     ax_cut_part* parts;
     int clashes_found;
-    int frames_checked; // states between flat and open in which panels were held against each other
+    int frame_count;
+    ax_cut_frame* frames;
+    bool simulated_way; // frames are of a simulation; else the panels' middles go straight from flat to open
+    int frames_checked;
     double frame_error; // mm, by which hinges of these are off at most; what overlaps by less does not count
     const ax_joint_type* joint;
     double joint_values[8]; // as used, by the joint's parameters

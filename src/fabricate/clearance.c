@@ -595,29 +595,38 @@ static bool check_way(ax_work* w, ax_pool* pool, const ax_progress* progress)
 {
     static const double most_error = 1e-3;
     int count = w->options->frames;
-    double(*places)[3] = ax_alloc((size_t)w->linkage->hinge_count, sizeof *places);
-    double edge = 1000 * ax_unit_in_metres(w->design->unit) * w->design->report.edge_max;
+    double mm = 1000 * ax_unit_in_metres(w->design->unit), edge = mm * w->design->report.edge_max;
     ax_way* way = ax_way_make(w->design, pool);
     meetings met = {0};
     bool go_on = true;
+    w->plan->frames = AX_NEW0(ax_cut_frame, count + 1);
+    w->plan->simulated_way = w->design->simulated != NULL;
     for (int k = 1; k <= count && go_on; ++k) {
         ax_progress_part slot;
-        double error;
+        ax_way_state state;
         met.opening = (double)k / (count + 1);
-        go_on =
-            ax_progress_report(progress, "Proving clearance on the way", (double)(k - 1) / count, NAN) &&
-            ax_way_at(way, met.opening, ax_progress_within(&slot, progress, (double)(k - 1) / count, (double)k / count),
-                      places, &error);
-        if (!go_on || error > most_error)
+        go_on = ax_progress_report(progress, "Proving clearance on the way", (double)(k - 1) / count, NAN) &&
+                ax_way_at(way, met.opening,
+                          ax_progress_within(&slot, progress, (double)(k - 1) / count, (double)k / count), &state);
+        if (!go_on)
+            break;
+        ax_cut_frame* frame = &w->plan->frames[w->plan->frame_count++];
+        *frame = (ax_cut_frame){.opening = met.opening,
+                                .strain = state.strain,
+                                .moved = mm * state.moved,
+                                .error = state.error,
+                                .checked = state.error <= most_error};
+        if (!frame->checked)
             continue;
+        int before = met.count;
         ++w->plan->frames_checked;
-        w->plan->frame_error = fmax(w->plan->frame_error, error * edge);
-        check_state(w, pool, (const double(*)[3])places, touching + error * edge, keep_meeting, &met);
+        w->plan->frame_error = fmax(w->plan->frame_error, state.error * edge);
+        check_state(w, pool, state.places, touching + state.error * edge, keep_meeting, &met);
+        frame->clashes = met.count - before;
     }
     name_meetings(w->plan, &met);
     ax_free(met.list);
     ax_way_free(way);
-    ax_free(places);
     return go_on;
 }
 

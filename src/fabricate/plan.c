@@ -26,6 +26,7 @@ void ax_cut_plan_free(ax_cut_plan* plan)
     ax_free(plan->panels);
     ax_free(plan->hinges);
     ax_free(plan->clashes);
+    ax_free(plan->frames);
     ax_free(plan->parts);
     *plan = (ax_cut_plan){0};
 }

@@ -1,6 +1,8 @@
-// States between flat and deployed. The panels' middles go straight from where they lie to where they end, which is how a uniform
-// linkage opens; of the rigid linkages with middles near there the projective solver finds the nearest. A linkage has more
-// freedoms than one, so this is a way that it can take, and the one along which it is drawn apart evenly.
+// States between flat and open, with rigid panels.
+//
+// Of a design that has been simulated they are taken from a simulation in time: supports go from the flat sheet to where they end
+// while the load opens the holes. Such a state's panels are not quite rigid; the projective solver finds the linkage of rigid panels
+// whose middles are nearest to it. Without a load the panels' middles go straight from where they lie to where they end.
 #pragma once
 
 #include "ax/design.h"
@@ -12,6 +14,12 @@ typedef struct ax_way ax_way;
 ax_way* ax_way_make(const ax_design* design, ax_pool* pool);
 void ax_way_free(ax_way* way);
 
-// Hinge places (document units) at `t`, 0 flat, 1 open, beginning with the state asked before. `error` receives the largest relative
-// error of an edge. False if cancelled.
-bool ax_way_at(ax_way* way, double t, const ax_progress* progress, double (*places)[3], double* error);
+typedef struct ax_way_state {
+    const double (*places)[3]; // of hinges, document units; until the next call
+    double error;              // largest relative error of an edge
+    // of the simulation, before panels were made rigid: largest relative error of an edge, largest distance of a hinge from there
+    double strain, moved;
+} ax_way_state;
+
+// At `t`, 0 flat, 1 open: of the simulation, the time. It goes on from the state asked before. False if cancelled.
+bool ax_way_at(ax_way* way, double t, const ax_progress* progress, ax_way_state* state);
