@@ -8,10 +8,15 @@
 #include <string.h>
 
 // Columns eliminated before the rest of the front is updated, columns that one task updates, rows that are updated at once.
-enum { BLOCK = 64, COLUMNS_PER_TASK = 16, LEAST_SHARED = 128, STRIP = AX_FRONT_STRIP };
-
-typedef double v4 __attribute__((vector_size(32)));
-typedef double loose4 __attribute__((vector_size(32), aligned(8)));
+enum {
+    BLOCK = 64,
+    COLUMNS_PER_TASK = 16,
+    STRIPS_PER_TASK = 4,
+    COLUMNS_MOVED = 64,
+    LEAST_SHARED = 128,
+    STRIP = AX_FRONT_STRIP,
+    ROUND = AX_FRONT_ROUND
+};
 
 typedef struct factoring {
     ax_panels* panels;
@@ -22,77 +27,61 @@ typedef struct factoring {
     double** update; // per supernode: what it left
     double* stack[AX_PANEL_PARTS + 1];
     atomic_bool failed;
+    const struct kernels* kernels;
 } factoring;
 
 // A front: columns of `stride` doubles, its lower triangle in use, rows behind the last one zero.
 typedef struct front {
+    const struct kernels* kernels;
     double* entry;
     size_t stride;
     int size, from, to; // rows; columns from .. to - 1 are to be subtracted
-    int first, block;   // first column to update, columns a task
-    double*
-        packed; // rows from `first` on of the columns to subtract: strips of eight rows, in each column after column
+    int first;          // first column to update
+    int done;           // rows above have their columns from .. to - 1 eliminated
+    double* packed;     // rows from `first` on of the columns to subtract: strips of rows, in each column after column
 } front;
-
-// entry[:, j .. j + W) -= sum over k of entry[:, k] entry[j .. j + W, k]. Rows above the diagonal get values that nobody reads.
-#define UPDATE(W)                                                                                                      \
-    static void update_##W(const front* f, int j)                                                                      \
-    {                                                                                                                  \
-        int row = j / 4 * 4, rows = (f->size + 3) / 4 * 4;                                                             \
-        double* column = f->entry + (size_t)j * f->stride;                                                             \
-        for (; row + 8 <= rows; row += 8) {                                                                            \
-            v4 a[W], b[W];                                                                                             \
-            for (int c = 0; c < W; ++c) {                                                                              \
-                a[c] = *(v4*)(column + (size_t)c * f->stride + row);                                                   \
-                b[c] = *(v4*)(column + (size_t)c * f->stride + row + 4);                                               \
-            }                                                                                                          \
-            const double* at = f->entry + (size_t)f->from * f->stride;                                                 \
-            for (int k = f->from; k < f->to; ++k, at += f->stride) {                                                   \
-                v4 p = *(const v4*)(at + row), q = *(const v4*)(at + row + 4);                                         \
-                for (int c = 0; c < W; ++c) {                                                                          \
-                    a[c] -= p * at[j + c];                                                                             \
-                    b[c] -= q * at[j + c];                                                                             \
-                }                                                                                                      \
-            }                                                                                                          \
-            for (int c = 0; c < W; ++c) {                                                                              \
-                *(v4*)(column + (size_t)c * f->stride + row) = a[c];                                                   \
-                *(v4*)(column + (size_t)c * f->stride + row + 4) = b[c];                                               \
-            }                                                                                                          \
-        }                                                                                                              \
-        if (row < rows) {                                                                                              \
-            v4 a[W];                                                                                                   \
-            for (int c = 0; c < W; ++c)                                                                                \
-                a[c] = *(v4*)(column + (size_t)c * f->stride + row);                                                   \
-            const double* at = f->entry + (size_t)f->from * f->stride;                                                 \
-            for (int k = f->from; k < f->to; ++k, at += f->stride) {                                                   \
-                v4 p = *(const v4*)(at + row);                                                                         \
-                for (int c = 0; c < W; ++c)                                                                            \
-                    a[c] -= p * at[j + c];                                                                             \
-            }                                                                                                          \
-            for (int c = 0; c < W; ++c)                                                                                \
-                *(v4*)(column + (size_t)c * f->stride + row) = a[c];                                                   \
-        }                                                                                                              \
-    }
-UPDATE(1)
-UPDATE(2)
-UPDATE(3)
-UPDATE(4)
-
-static void update_columns(const front* f, int from, int to)
-{
-    static void (*const kernel[])(const front*, int) = {NULL, update_1, update_2, update_3, update_4};
-    for (int j = from; j < to; j += 4)
-        kernel[to - j < 4 ? to - j : 4](f, j);
-}
 
 static int strip_count(const front* f)
 {
     return (f->size - f->first + STRIP - 1) / STRIP;
 }
 
-static void pack_strip(void* context, int strip)
+static inline int rows_stored(const front* f)
 {
-    const front* f = context;
+    return (f->size + ROUND - 1) / ROUND * ROUND;
+}
+
+// What vectors of one width do.
+typedef struct kernels {
+    void (*update_columns)(const front*, int from, int to, int row, int end);
+    void (*update_task)(void* front, int task);
+    void (*eliminate_rows)(const front*, int j, int width, int row, int end);
+} kernels;
+
+#define NAME(x) x##_by_4
+#define LANES   4
+#define TARGET
+#include "linalg/front_kernels.h"
+
+// Three times as fast where there is such hardware, with the same bits.
+#if defined(__x86_64__)
+#define NAME(x) x##_by_8
+#define LANES   8
+#define TARGET  __attribute__((target("avx512f")))
+#include "linalg/front_kernels.h"
+#endif
+
+static const kernels* best_kernels(void)
+{
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f"))
+        return &kernels_by_8;
+#endif
+    return &kernels_by_4;
+}
+
+static void pack_strip(const front* f, int strip)
+{
     int row = f->first + strip * STRIP, rows = f->size - row < STRIP ? f->size - row : STRIP;
     double* to = f->packed + (size_t)strip * BLOCK * STRIP;
     for (int k = f->from; k < f->to; ++k, to += STRIP) {
@@ -102,131 +91,134 @@ static void pack_strip(void* context, int strip)
     }
 }
 
-// Four columns from j on, in the rows of one strip: what the kernels above do, in the same order, but reading memory as it lies.
-static void update_strip(const front* f, int strip, int j)
+// The triangle of columns j .. j + width - 1, up to date with all columns before. False: not positive.
+static bool eliminate_triangle(const front* f, int j, int width)
 {
-    int row = f->first + strip * STRIP, depth = f->to - f->from;
-    const double* a = f->packed + (size_t)strip * BLOCK * STRIP;
-    const double* b = f->packed + (size_t)((j - f->first) / STRIP) * BLOCK * STRIP + (j - f->first) % STRIP;
-    double* column = f->entry + (size_t)j * f->stride + row;
-    v4 lower[4], upper[4];
-    for (int c = 0; c < 4; ++c) {
-        lower[c] = *(loose4*)(column + (size_t)c * f->stride);
-        upper[c] = *(loose4*)(column + (size_t)c * f->stride + 4);
-    }
-    for (int k = 0; k < depth; ++k, a += STRIP, b += STRIP) {
-        v4 p = *(const v4*)a, q = *(const v4*)(a + 4);
-        for (int c = 0; c < 4; ++c) {
-            lower[c] -= p * b[c];
-            upper[c] -= q * b[c];
-        }
-    }
-    for (int c = 0; c < 4; ++c) {
-        *(loose4*)(column + (size_t)c * f->stride) = lower[c];
-        *(loose4*)(column + (size_t)c * f->stride + 4) = upper[c];
-    }
-}
-
-static void update_task(void* context, int task)
-{
-    const front* f = context;
-    int from = f->first + task * f->block, to = from + f->block < f->size ? from + f->block : f->size;
-    int fours = from + (to - from) / 4 * 4;
-    for (int strip = (from - f->first) / STRIP; strip < strip_count(f); ++strip)
-        for (int j = from; j < fours; j += 4)
-            update_strip(f, strip, j);
-    update_columns(f, fours, to);
-}
-
-// Columns j .. j + width - 1, up to date with all columns before: their triangle, then the rows below. False: not positive.
-static bool eliminate(front* f, int j, int width)
-{
-    double *column[4], *entry = f->entry + (size_t)j * f->stride;
-    for (int c = 0; c < width; ++c, entry += f->stride)
-        column[c] = entry;
-    double scale[4];
+    double *column[4], scale;
     for (int c = 0; c < width; ++c) {
+        column[c] = f->entry + (size_t)(j + c) * f->stride;
         for (int b = 0; b < c; ++b)
             for (int r = c; r < width; ++r)
                 column[c][j + r] -= column[b][j + r] * column[b][j + c];
         if (!(column[c][j + c] > 0))
             return false;
         column[c][j + c] = sqrt(column[c][j + c]);
-        scale[c] = 1 / column[c][j + c];
+        scale = 1 / column[c][j + c];
         for (int r = c + 1; r < width; ++r)
-            column[c][j + r] *= scale[c];
+            column[c][j + r] *= scale;
     }
-    int row = j + width;
-    for (; row < f->size && row % 4; ++row)
-        for (int c = 0; c < width; ++c) {
-            for (int b = 0; b < c; ++b)
-                column[c][row] -= column[b][row] * column[b][j + c];
-            column[c][row] *= scale[c];
-        }
-    for (; row < f->size; row += 4)
-        for (int c = 0; c < width; ++c) {
-            v4 sum = *(v4*)(column[c] + row);
-            for (int b = 0; b < c; ++b)
-                sum -= *(v4*)(column[b] + row) * column[b][j + c];
-            *(v4*)(column[c] + row) = sum * scale[c];
-        }
     return true;
+}
+
+// Columns from .. to - 1 in the rows to be done. False: not positive.
+static bool eliminate(const front* f)
+{
+    front before = *f; // columns before those in hand
+    for (int j = f->from; j < f->to; j += 4) {
+        int width = f->to - j < 4 ? f->to - j : 4;
+        before.to = j;
+        f->kernels->update_columns(&before, j, j + width, 0, f->done);
+        if (!eliminate_triangle(f, j, width))
+            return false;
+        f->kernels->eliminate_rows(f, j, width, j + width, f->done);
+    }
+    return true;
+}
+
+// The same columns in a few strips of rows below, if they are not done, while they are in the cache; then packs them.
+static void eliminate_strips(void* context, int task)
+{
+    const front* f = context;
+    int first = task * STRIPS_PER_TASK, last = first + STRIPS_PER_TASK;
+    last = last < strip_count(f) ? last : strip_count(f);
+    int row = f->first + first * STRIP, end = f->first + last * STRIP;
+    front before = *f;
+    for (int j = f->from; j < f->to && f->done <= row; j += 4) {
+        int width = f->to - j < 4 ? f->to - j : 4;
+        before.to = j;
+        f->kernels->update_columns(&before, j, j + width, row, end);
+        f->kernels->eliminate_rows(f, j, width, row, end);
+    }
+    for (int strip = first; strip < last; ++strip)
+        pack_strip(f, strip);
 }
 
 // Eliminates the first `width` columns and updates the rest.
 static bool factor_front(front* f, int width, ax_pool* pool)
 {
-    for (int from = 0; from < width; from += BLOCK) {
-        int to = from + BLOCK < width ? from + BLOCK : width;
-        f->from = from;
-        for (int j = from; j < to; j += 4) {
-            int w = to - j < 4 ? to - j : 4;
-            f->to = j;
-            update_columns(f, j, j + w);
-            if (!eliminate(f, j, w))
-                return false;
-        }
-        f->to = f->first = to;
-        f->block = COLUMNS_PER_TASK;
-        if (f->size - to < LEAST_SHARED)
-            update_columns(f, to, f->size);
+    for (f->from = 0; f->from < width; f->from = f->to) {
+        f->to = f->first = width - f->from > BLOCK ? f->from + BLOCK : width;
+        bool shared = f->size - f->to >= LEAST_SHARED;
+        // vectors must end where the shared rows begin
+        f->done = shared && f->to % ROUND == 0 ? f->to : rows_stored(f);
+        if (!eliminate(f))
+            return false;
+        if (!shared)
+            f->kernels->update_columns(f, f->to, f->size, 0, rows_stored(f));
         else {
-            ax_pool_run(pool, pack_strip, f, strip_count(f));
-            ax_pool_run(pool, update_task, f, (f->size - to + f->block - 1) / f->block);
+            ax_pool_run(pool, eliminate_strips, f, (strip_count(f) + STRIPS_PER_TASK - 1) / STRIPS_PER_TASK);
+            ax_pool_run(pool, f->kernels->update_task, f, (f->size - f->to + COLUMNS_PER_TASK - 1) / COLUMNS_PER_TASK);
         }
     }
     return true;
 }
 
-// Adds what child c left to the front. local: row -> place in the front.
-static void add_child(const factoring* f, const front* to, int c, const int* local, const int* row, int* place)
+// Where column j begins in a lower triangle of `rows` rows, column by column.
+static inline size_t triangle_at(int rows, int j)
 {
-    const ax_supernode* child = f->panels->nodes + c;
-    const double* from = f->update[c];
-    for (int r = 0; r < child->rows; ++r)
-        place[r] = local[row[r]];
-    for (int j = 0; j < child->rows; ++j) {
-        double* column = to->entry + (size_t)place[j] * to->stride;
-        for (int r = j; r < child->rows; ++r)
-            column[place[r]] += *from++;
+    return (size_t)j * (size_t)rows - (size_t)j * (size_t)(j - 1) / 2;
+}
+
+// A child's triangle on its way to its parent's front, or from the front to memory, in tasks of COLUMNS_MOVED columns.
+typedef struct moving {
+    const front* f;
+    const ax_panels* panels;
+    const ax_supernode* node;
+    double* triangle;
+    const int *place, *run; // of the child's rows: where they go, and the end of each run of neighbours
+} moving;
+
+static void add_columns(void* context, int task)
+{
+    const moving* m = context;
+    int rows = m->node->rows, last = (task + 1) * COLUMNS_MOVED < rows ? (task + 1) * COLUMNS_MOVED : rows;
+    const double* from = m->triangle + triangle_at(rows, task * COLUMNS_MOVED);
+    for (int j = task * COLUMNS_MOVED; j < last; ++j) {
+        double* column = m->f->entry + (size_t)m->place[j] * m->f->stride;
+        for (int r = j, end; r < rows; r = end) {
+            double* restrict to = column + m->place[r] - r;
+            for (end = m->run[r]; r < end; ++r)
+                to[r] += *from++;
+        }
     }
 }
 
-static void store(const ax_panels* s, const ax_supernode* node, const front* f)
+static void leave_columns(void* context, int task)
 {
-    const ax_panel* p = s->panels + node->panel;
-    for (int c = 0; c < node->width; c += AX_PANEL_WIDTH, ++p) {
-        double* to = s->value + p->value;
-        const double* from = f->entry + (size_t)c * f->stride;
+    const moving* m = context;
+    int rows = m->node->rows, last = (task + 1) * COLUMNS_MOVED < rows ? (task + 1) * COLUMNS_MOVED : rows;
+    const double* from = m->f->entry + (size_t)m->node->width * (m->f->stride + 1);
+    for (int j = task * COLUMNS_MOVED; j < last; ++j)
+        memcpy(m->triangle + triangle_at(rows, j), from + (size_t)j * (m->f->stride + 1),
+               (size_t)(rows - j) * sizeof *from);
+}
+
+static void store_panel(void* context, int panel)
+{
+    const moving* m = context;
+    const front* f = m->f;
+    const ax_panel* p = m->panels->panels + m->node->panel + panel;
+    int c = panel * AX_PANEL_WIDTH;
+    double* to = m->panels->value + p->value;
+    const double* from = f->entry + (size_t)c * f->stride;
+    for (int j = 0; j < p->width; ++j)
+        for (int r = j; r < p->width; ++r) {
+            double l = from[(size_t)j * f->stride + (size_t)(c + r)];
+            *to++ = r == j ? 1 / l : l;
+        }
+    for (int r = c + p->width; r < f->size; ++r)
         for (int j = 0; j < p->width; ++j)
-            for (int r = j; r < p->width; ++r) {
-                double l = from[(size_t)j * f->stride + (size_t)(c + r)];
-                *to++ = r == j ? 1 / l : l;
-            }
-        for (int r = c + p->width; r < f->size; ++r)
-            for (int j = 0; j < p->width; ++j)
-                *to++ = from[(size_t)j * f->stride + (size_t)r];
-    }
+            *to++ = from[(size_t)j * f->stride + (size_t)r];
 }
 
 // The row that an index of a part stands for.
@@ -235,21 +227,33 @@ static inline int row_of(const ax_panels* s, int part, int index)
     return index < s->n ? index : s->top_first + index - s->n - part * ax_panels_top(s);
 }
 
+static int tasks_to_move(const ax_supernode* node)
+{
+    return (node->rows + COLUMNS_MOVED - 1) / COLUMNS_MOVED;
+}
+
 static void factor_part(void* context, int part)
 {
     factoring* f = context;
     ax_panels* s = f->panels;
     double* entry = ax_alloc_aligned(s->front_size[part], sizeof *entry);
     double* packed = ax_alloc_aligned(BLOCK * (s->longest[part] + STRIP), sizeof *packed);
-    int *local = AX_NEW(int, s->n), *rows = AX_NEW(int, s->n), *place = AX_NEW(int, s->n);
+    int *local = AX_NEW(int, s->n), *place = AX_NEW(int, s->n), *run = AX_NEW(int, s->n);
     size_t held = 0;
     f->stack[part] = AX_NEW(double, s->stack_size[part]);
     for (int visit = s->part_node[part]; visit < s->part_node[part + 1] && !atomic_load(&f->failed); ++visit) {
         int k = s->depth_first[visit];
         const ax_supernode* node = s->nodes + k;
-        front own = {
-            .entry = entry, .stride = ax_front_stride(node), .size = node->width + node->rows, .packed = packed};
-        memset(entry, 0, own.stride * (size_t)own.size * sizeof *entry);
+        front own = {.kernels = f->kernels,
+                     .entry = entry,
+                     .stride = ax_front_stride(node),
+                     .size = node->width + node->rows,
+                     .packed = packed};
+        ax_pool* pool = part == s->parts && own.size >= LEAST_SHARED ? f->pool : NULL;
+        for (int c = 0; c < own.size; ++c) { // the lower triangle, from a whole vector on
+            size_t row = (size_t)(c / ROUND * ROUND);
+            memset(entry + (size_t)c * own.stride + row, 0, (own.stride - row) * sizeof *entry);
+        }
         for (int r = 0; r < own.size; ++r)
             local[row_of(s, part, s->index[node->index + r])] = r;
         for (int c = 0; c < node->width; ++c) {
@@ -268,27 +272,26 @@ static void factor_part(void* context, int part)
             else
                 held -= ax_update_size(child);
             const int* index = s->index + child->index + child->width;
-            for (int r = 0; r < child->rows; ++r)
-                rows[r] = row_of(s, owner, index[r]);
-            add_child(f, &own, c, local, rows, place);
+            for (int r = child->rows - 1; r >= 0; --r) {
+                place[r] = local[row_of(s, owner, index[r])];
+                run[r] = r + 1 < child->rows && place[r + 1] == place[r] + 1 ? run[r + 1] : r + 1;
+            }
+            ax_pool_run(pool, add_columns, &(moving){&own, s, child, f->update[c], place, run}, tasks_to_move(child));
         }
-        if (!factor_front(&own, node->width, part == s->parts ? f->pool : NULL)) {
+        if (!factor_front(&own, node->width, pool)) {
             atomic_store(&f->failed, true);
             break;
         }
-        store(s, node, &own);
-        double* to = f->update[k] = f->stack[part] + held;
-        for (int j = node->width; j < own.size; ++j) {
-            memcpy(to, entry + (size_t)j * own.stride + j, (size_t)(own.size - j) * sizeof *to);
-            to += own.size - j;
-        }
+        moving m = {&own, s, node, f->update[k] = f->stack[part] + held, NULL, NULL};
+        ax_pool_run(pool, store_panel, &m, (node->width + AX_PANEL_WIDTH - 1) / AX_PANEL_WIDTH);
+        ax_pool_run(pool, leave_columns, &m, tasks_to_move(node));
         held += ax_update_size(node);
     }
     ax_free(entry);
     ax_free(packed);
     ax_free(local);
-    ax_free(rows);
     ax_free(place);
+    ax_free(run);
 }
 
 bool ax_panels_factor(ax_panels* s, const ax_sparse* matrix, ax_pool* pool)
@@ -322,7 +325,8 @@ bool ax_panels_factor(ax_panels* s, const ax_sparse* matrix, ax_pool* pool)
                    .row = row,
                    .value = value,
                    .diagonal = diagonal,
-                   .update = AX_NEW(double*, s->node_count)};
+                   .update = AX_NEW(double*, s->node_count),
+                   .kernels = best_kernels()};
     ax_pool_run(pool, factor_part, &f, s->parts);
     if (!f.failed)
         factor_part(&f, s->parts);

@@ -3,7 +3,7 @@
 
 #include "linalg/panels.h"
 
-enum { AX_PANEL_WIDTH = 4, AX_PANEL_PARTS = 8, AX_FRONT_STRIP = 8 };
+enum { AX_PANEL_WIDTH = 4, AX_PANEL_PARTS = 8, AX_FRONT_STRIP = 16, AX_FRONT_ROUND = 8 };
 
 // Up to four columns of a supernode: their triangle (column by column, diagonal as its reciprocal), then the rows below, row by
 // row. The panels of a supernode share its list of rows.
@@ -48,7 +48,7 @@ static inline int ax_panels_top(const ax_panels* s)
 static inline size_t ax_front_stride(const ax_supernode* node)
 {
     size_t size = (size_t)(node->width + node->rows);
-    return (size + (size > 64 ? AX_FRONT_STRIP : 0) + 3) / 4 * 4;
+    return (size + (size > 64 ? AX_FRONT_STRIP : 0) + AX_FRONT_ROUND - 1) / AX_FRONT_ROUND * AX_FRONT_ROUND;
 }
 
 // Entries of what a front leaves for its parent: the lower triangle of its rows below.
