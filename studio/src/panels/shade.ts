@@ -16,26 +16,17 @@ const toDisplay = Uint8Array.from({ length: steps + 1 }, (_, k) => {
     return Math.round(255 * (v <= 0.0031308 ? v * 12.92 : 1.055 * v ** (1 / 2.4) - 0.055));
 });
 
-/** Display colours of both sides of every panel, from its normal (3 numbers) and tint (4 bytes): 3 vertices per panel with 4 bytes each;
- *  the fourth byte of the top is the panel's mark. */
-export function shadePanels(lights: Lights, normals: Float32Array, tints: Uint8Array, marks: Uint8Array, top: Uint8Array, below: Uint8Array): void {
-    const light = [0, 0, 0];
-    const side = (t: number, sign: number, share: number, out: Uint8Array) => {
-        const [x, y, z] = [sign * normals[3 * t], sign * normals[3 * t + 1], sign * normals[3 * t + 2]];
-        const up = 0.5 + 0.5 * z;
-        for (let c = 0; c < 3; c++) light[c] = lights.ground[c] + (lights.sky[c] - lights.ground[c]) * up;
-        for (const { from, colour } of lights.lamps) {
-            const meets = x * from[0] + y * from[1] + z * from[2];
-            if (meets > 0) for (let c = 0; c < 3; c++) light[c] += colour[c] * meets;
-        }
-        for (let c = 0; c < 3; c++) {
-            const shown = toDisplay[Math.min(steps, Math.round((steps * share * toLinear[tints[4 * t + c]] * light[c]) / Math.PI))];
-            out[12 * t + c] = out[12 * t + 4 + c] = out[12 * t + 8 + c] = shown;
-        }
-    };
-    for (let t = 0; t < marks.length; t++) {
-        side(t, 1, 1, top);
-        side(t, -1, underside, below);
-        top[12 * t + 3] = top[12 * t + 7] = top[12 * t + 11] = marks[t];
+/** Display colour 0xBBGGRR of one side of a panel, from the panel's unit normals (3 numbers each) and tints (4 bytes each). */
+export function shadePanel({ lamps, sky, ground }: Lights, normals: Float32Array, tints: Uint8Array, panel: number, front: boolean): number {
+    const sign = front ? 1 : -1;
+    const x = sign * normals[3 * panel], y = sign * normals[3 * panel + 1], z = sign * normals[3 * panel + 2];
+    const up = 0.5 + 0.5 * z;
+    const scale = (steps * (front ? 1 : underside)) / Math.PI;
+    let shown = 0;
+    for (let c = 2; c >= 0; c--) {
+        let light = ground[c] + (sky[c] - ground[c]) * up;
+        for (const { from, colour } of lamps) light += colour[c] * Math.max(0, x * from[0] + y * from[1] + z * from[2]);
+        shown = (shown << 8) | toDisplay[Math.min(steps, Math.round(scale * toLinear[tints[4 * panel + c]] * light))];
     }
+    return shown;
 }

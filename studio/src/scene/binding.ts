@@ -1,10 +1,10 @@
 // From state to scene: what the signals say is drawn. The scene itself reads no signal and writes none.
 import { effect } from "@preact/signals";
 import { stateDrawn, stateSubmitted } from "../state/latency";
-import { connection, currentShell, holdStates, onShell, revision, settleRevision, takenStates } from "../state/session";
+import { acknowledge, connection, currentShell, frames, holdStates, onShell, settleFrames } from "../state/session";
 import { darkTheme, reducedMotion } from "../state/settings";
 import { hovered, selected, selectedHinges, shown } from "../state/selection";
-import { fieldView, mode, scaleLimit } from "../state/view";
+import { fieldView, mode, scaleLimit, tints } from "../state/view";
 import { motion } from "../state/motion";
 import { tool } from "../tools";
 import { drawHinges, drawPanel } from "../tools/select";
@@ -33,19 +33,22 @@ export function bindScene(stage: Stage): () => void {
     stops.push(effect(() => stage.setLook(darkTheme.value ? dark : light)));
     stops.push(effect(() => void (stage.animated = !reducedMotion.value)));
     stops.push(effect(() => {
-        const { shown: k, frames } = motion.value;
-        if (k !== null && frames[k]) stage.setPlaces(frames[k]);
+        const { shown: k, frames: states } = motion.value;
+        if (k !== null && states[k]) stage.setPlaces(states[k]);
         else stage.setPlaces();
     }));
-    // colours
+    // forces and colours
     stops.push(effect(() => {
         const view = fieldView.value;
         if (!view || !stage.scenes || view.values.length !== stage.shell?.linkage.panels) return;
         const bars = view.field.id === "force" && stage.shell.forces ? stage.shell.forces.map((f) => f / view.scale.hi) : null;
         stage.each(({ panels }) => {
-            panels.setTints(view.tints);
             panels.setForces(bars, view.scale.map.table);
         });
+    }));
+    stops.push(effect(() => {
+        const colours = tints.value;
+        if (colours && stage.scenes && colours.length === 4 * stage.shell!.linkage.panels) stage.each(({ panels }) => panels.setTints(colours));
     }));
     // marks: what is beyond the limit, selected
     stops.push(effect(() => {
@@ -65,10 +68,10 @@ export function bindScene(stage: Stage): () => void {
         stage.each(({ panels }) => panels.setFade(fade));
     }));
     stops.push(effect(() => {
-        revision.value;
+        frames.value;
         const shell = currentShell();
         const visible = mode.value === "analyse" || tool.value.id === "pin";
-        if (visible || supports.group.visible) stage.invalidate();
+        if (visible || supports.group.visible) stage.invalidateBackdrop();
         supports.group.visible = visible;
         if (visible && shell && stage.scenes)
             supports.show(shell, stage.scenes.space.panels.places, stage.scenes.space.panels.edge, radiusOf(stage.scenes.space.bounds), (darkTheme.value ? dark : light).ink);
@@ -92,11 +95,10 @@ export function bindScene(stage: Stage): () => void {
         stage.invalidateOverlay();
     }));
 
-    stops.push(holdStates());
-    stage.onBefore = settleRevision;
+    stops.push(holdStates(() => stage.rendering));
+    stage.onBefore = settleFrames;
     stage.onSubmitted = () => {
         const serial = currentShell()?.serial ?? 0;
-        const acknowledge = takenStates();
         stateSubmitted(serial);
         return () => {
             stateDrawn(serial);

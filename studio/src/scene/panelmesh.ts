@@ -1,13 +1,14 @@
 // Panels and joints of one state as two instanced meshes. Per frame 9 numbers per panel and 6 per joint go to the graphics card.
-// What moves on a slow renderer is drawn by a quick mesh instead.
+// What moves on a slow renderer is drawn without it.
 import * as THREE from "three";
+import { hexToRgb } from "../panels/colour";
 import { type Detail, drawn, makeTemplate } from "../panels/template";
 import type { Linkage } from "../panels/linkage";
 import { gather, medianEdge } from "../panels/linkage";
 import { hingeNormals, panelNormals } from "../panels/measures";
-import type { Lights } from "../panels/shade";
+import { type Inks, type Picture, type Window, drawPanels } from "../panels/raster";
+import { type Lights, shadePanel } from "../panels/shade";
 import type { Look } from "./look";
-import { QuickMesh } from "./quickmesh";
 
 /** Marks of a panel, read by the fragment shader. */
 export const mark = { none: 0, selected: 128, hatched: 192 };
@@ -95,8 +96,16 @@ function placeVertices(shader: { vertexShader: string; uniforms: Record<string, 
             "vec3 transformed = panelPlace();\nvBary = bary; vTint = tint.rgb; vMark = marked; vKind = level.z; vForce = force;");
 }
 
+/** 0xBBGGRR of a colour in style sheets. */
+function inkOf(style: string): number {
+    const [r, g, b] = hexToRgb(style);
+    return (b << 16) | (g << 8) | r;
+}
+
 export class PanelMesh {
     readonly group = new THREE.Group();
+    /** The panels as one mesh of triangles. */
+    readonly plainGeometry = new THREE.BufferGeometry();
     /** Length of a median panel edge; all drawn sizes hang on it. */
     edge = 1;
     readonly places: Float32Array;
@@ -108,7 +117,7 @@ export class PanelMesh {
     private readonly force: THREE.InstancedBufferAttribute;
     private readonly geometries = new Map<Detail, THREE.InstancedBufferGeometry>();
     private readonly mesh: THREE.Mesh<THREE.InstancedBufferGeometry, THREE.MeshStandardMaterial>;
-    private readonly quick: QuickMesh;
+    private readonly plainPlaces: THREE.BufferAttribute;
     private lights: Lights = { lamps: [], sky: [0, 0, 0], ground: [0, 0, 0] };
     private readonly joints: THREE.Mesh<THREE.InstancedBufferGeometry, THREE.MeshStandardMaterial>;
     private readonly jointPlaces: THREE.InstancedBufferAttribute;
@@ -120,7 +129,6 @@ export class PanelMesh {
     private detail: Detail = "full";
     private jointsStale = true;
     private normalsStale = true;
-    private quickStale = true;
     private fixedEdge = false;
 
     constructor(linkage: Linkage, look: Look) {
@@ -157,7 +165,8 @@ export class PanelMesh {
         this.mesh.frustumCulled = false;
         this.mesh.castShadow = this.mesh.receiveShadow = true;
 
-        this.quick = new QuickMesh(this.corners, this.uniforms);
+        this.plainPlaces = new THREE.BufferAttribute(this.corners, 3).setUsage(THREE.DynamicDrawUsage);
+        this.plainGeometry.setAttribute("position", this.plainPlaces);
 
         const cylinder = new THREE.CylinderGeometry(1, 1, 1, 16, 1).rotateX(Math.PI / 2);
         const joint = new THREE.InstancedBufferGeometry();
@@ -188,7 +197,7 @@ mat3 jointFrame() {
         this.joints = new THREE.Mesh(joint, metal);
         this.joints.frustumCulled = false;
         this.joints.receiveShadow = true;
-        this.group.add(this.mesh, this.joints, this.quick.mesh);
+        this.group.add(this.mesh, this.joints);
         this.setLook(look);
     }
 
@@ -197,25 +206,22 @@ mat3 jointFrame() {
         (this.uniforms.accent.value as THREE.Color).setStyle(look.accent).convertLinearToSRGB();
         this.uniforms.lineAlpha.value = look.lineAlpha;
         this.lineAlpha = look.lineAlpha;
+        this.inks = { line: inkOf(look.line), accent: inkOf(look.accent), hatch: inkOf("#0b0d10") };
         this.joints.material.color.setStyle(look.joint);
     }
     private lineAlpha = 0;
+    private inks: Omit<Inks, "lineAlpha"> = { line: 0, accent: 0, hatch: 0 };
 
     setLights(lights: Lights): void {
         this.lights = lights;
-        this.quickStale = true;
     }
 
-    /** The quick way, or as `setDetail` says. */
-    setQuick(quick: boolean): void {
-        this.quick.mesh.visible = quick;
-        this.mesh.visible = !quick;
-        if (!quick) return;
-        this.joints.visible = false;
-        if (!this.quickStale) return;
+    /** Into a picture, without the renderer: one triangle per panel, as strongly outlined as `setDetail` said last. */
+    drawQuick(picture: Picture, window: Window): void {
         this.placeNormals();
-        this.quick.paint(this.lights, this.normals, this.tint.array as Uint8Array, this.marks.array as Uint8Array);
-        this.quickStale = false;
+        const tints = this.tint.array as Uint8Array;
+        drawPanels(picture, window, this.places, this.linkage.triangles, (t, front) => shadePanel(this.lights, this.normals, tints, t, front),
+            this.marks.array as Uint8Array, { ...this.inks, lineAlpha: this.uniforms.lineAlpha.value as number });
     }
 
     /** Level of detail and the outline's strength for so many pixels per panel edge. */
@@ -236,8 +242,8 @@ mat3 jointFrame() {
         this.places.set(places);
         gather(this.linkage.triangles, this.places, this.corners);
         this.cornerBuffer.needsUpdate = true;
-        this.quick.moved();
-        this.jointsStale = this.normalsStale = this.quickStale = true;
+        this.plainPlaces.needsUpdate = true;
+        this.jointsStale = this.normalsStale = true;
         if (!this.fixedEdge) {
             this.edge = medianEdge(this.linkage, this.places);
             this.fixedEdge = true;
@@ -263,12 +269,12 @@ mat3 jointFrame() {
     /** Four bytes per panel. */
     setTints(tints: Uint8Array): void {
         (this.tint.array as Uint8Array).set(tints);
-        this.tint.needsUpdate = this.quickStale = true;
+        this.tint.needsUpdate = true;
     }
 
     setMarks(marks: Uint8Array): void {
         (this.marks.array as Uint8Array).set(marks);
-        this.marks.needsUpdate = this.quickStale = true;
+        this.marks.needsUpdate = true;
     }
 
     /** Edge forces over their scale's end, 3 per panel, and the map they are drawn with; null draws none. */
@@ -287,16 +293,11 @@ mat3 jointFrame() {
         this.uniforms.fade.value = fade;
     }
 
-    /** The panels as one mesh of triangles. */
-    get plainGeometry(): THREE.BufferGeometry {
-        return this.quick.mesh.geometry;
-    }
-
     dispose(): void {
         for (const g of this.geometries.values()) g.dispose();
         this.joints.geometry.dispose();
         this.mesh.material.dispose();
-        this.quick.dispose();
+        this.plainGeometry.dispose();
         this.mesh.customDepthMaterial?.dispose();
         this.joints.material.dispose();
         this.forceMap.dispose();

@@ -3,13 +3,15 @@
 // can be drawn anew without the scenes.
 //
 // One picture at a time is with the renderer, and the next is of whatever is newest then: a slow renderer shows fewer pictures, not
-// older ones. If whole pictures take it too long, those of what moves are drawn the quick way, with fewer pixels if need be; once
-// nothing has changed for a moment a better picture follows, then the whole one.
+// older ones. If whole pictures take it too long, panels that move are drawn without it, on a canvas of their own over its ground;
+// once nothing has changed for a moment a better picture follows, then the whole one.
 import * as THREE from "three";
+import { type Picture, clear, makePicture } from "../panels/raster";
 import type { Shell } from "../panels/shell";
 import { type Detail, detailFor } from "../panels/template";
 import { OrbitCamera, type Pose, type Preset, presets, radiusOf } from "./camera";
 import { type Look, light } from "./look";
+import type { PanelMesh } from "./panelmesh";
 import { ShellScene } from "./shellscene";
 import { Skin, type SkinPoint } from "./skin";
 
@@ -37,15 +39,15 @@ export class View {
     }
 }
 
-/** A whole picture may take this long, one of what moves that long. Milliseconds. */
+/** A whole picture may take this long, milliseconds. */
 const wholeLimit = 40;
-const quickGoal = { least: 14, most: 32 };
-const ratios = [1, 0.75, 0.5];
 /** What must not have changed for this long before a better picture is drawn, and before the whole one. */
 const rests = [250, 1500];
 
 /** How much goes into a picture: what moves on a slow renderer; its first picture at rest, without bevels and joints; everything. */
 type Effort = "quick" | "plain" | "whole";
+
+type QuickPicture = Picture & { image: ImageData; context: CanvasRenderingContext2D };
 
 export type Overlay = (context: CanvasRenderingContext2D, stage: Stage) => void;
 export type Drawn = (view: View) => void;
@@ -88,18 +90,23 @@ export class Stage {
     private override: Float32Array | undefined;
     private stale = false;
     private staleOverlay = false;
-    /** The renderer is at a picture. */
+    /** A picture is on its way to the screen. */
     private flying = false;
     /** When something was last to be drawn anew. */
     private changed = 0;
     private drawnWith: Effort = "whole";
+    /** Whether the renderer had a part in the last picture. */
+    private rendered = false;
+    /** What the picture under quick panels was made for; empty: it was not. */
+    private backdrop = "";
+    private quickPicture: QuickPicture | null = null;
     /** Milliseconds that the last two whole pictures took: one alone may have had shaders to compile. */
     private wholeTimes: [number, number];
-    private ratio = 0;
     private width = 0;
     private height = 0;
 
-    constructor(readonly canvas: HTMLCanvasElement, readonly overlay: HTMLCanvasElement) {
+    /** `quick` and `overlay` lie over `canvas`, as large as it. */
+    constructor(readonly canvas: HTMLCanvasElement, private readonly quick: HTMLCanvasElement, readonly overlay: HTMLCanvasElement) {
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: false });
         this.renderer.toneMapping = THREE.NoToneMapping;
         this.renderer.outputColorSpace = THREE.SRGBColorSpace;
@@ -119,6 +126,7 @@ export class Stage {
         this.height = height;
         this.renderer.setPixelRatio(this.screenRatio);
         this.renderer.setSize(width, height, false);
+        this.backdrop = "";
         this.overlay.width = Math.round(width * this.screenRatio);
         this.overlay.height = Math.round(height * this.screenRatio);
         this.invalidate();
@@ -130,6 +138,11 @@ export class Stage {
 
     private get slow(): boolean {
         return Math.min(...this.wholeTimes) > wholeLimit;
+    }
+
+    /** The renderer is at a picture: a newer state could not be shown yet. */
+    get rendering(): boolean {
+        return this.flying && this.rendered;
     }
 
     /** Everything that was to be drawn has been, as well as it can be. */
@@ -153,7 +166,7 @@ export class Stage {
         this.look = look;
         for (const scene of Object.values(this.scenes ?? {})) scene.setLook(look);
         this.dirtyGround = true;
-        this.invalidate();
+        this.invalidateBackdrop();
     }
 
     /** A new linkage, or (null) none. */
@@ -182,7 +195,7 @@ export class Stage {
         }
         for (const scene of Object.values(before ?? {})) scene.dispose();
         this.dirtyShadows = this.dirtyGround = true;
-        this.invalidate();
+        this.invalidateBackdrop();
     }
 
     /** The shell's places changed. `space` overrides the state in space: a frame of a motion. Only what is drawn is computed with. */
@@ -212,6 +225,12 @@ export class Stage {
         this.stale = true;
         this.changed = performance.now();
         this.schedule();
+    }
+
+    /** Also what does not move with the panels. */
+    invalidateBackdrop(): void {
+        this.backdrop = "";
+        this.invalidate();
     }
 
     /** Only what lies over the scenes is. */
@@ -321,43 +340,87 @@ export class Stage {
         if (this.staleOverlay) this.drawOverlay();
     }
 
+    /** The views that are drawn. */
+    private get seen(): View[] {
+        return this.scenes ? this.shown.map((id) => this.views[id]).filter(({ rect }) => rect.width >= 2 && rect.height >= 2) : [];
+    }
+
     /** True while a camera is on its way. */
     private draw(now: number, effort: Effort): boolean {
         this.stale = false;
         this.staleOverlay = true;
         this.drawnWith = effort;
         if (this.dirtyPlaces) this.placeShell();
-        const { renderer, scenes } = this;
+        let moving = false;
+        for (const { orbit, state } of this.seen) moving = orbit.update(now, radiusOf(this.scenes![state].bounds)) || moving;
         const quick = effort === "quick";
-        const ratio = this.screenRatio * (quick ? ratios[this.ratio] : 1);
-        if (renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
+        const backdrop = quick ? this.backdropNow() : "";
+        this.rendered = !quick || backdrop !== this.backdrop;
+        this.backdrop = backdrop;
+        if (this.rendered) this.render(effort);
+        this.quick.hidden = !quick;
+        if (quick) this.drawQuick();
+        return moving;
+    }
+
+    /** What the picture under quick panels depends on. */
+    private backdropNow(): string {
+        return JSON.stringify(this.seen.map(({ rect, orbit }) => [rect, orbit.pose]));
+    }
+
+    private setDetail(view: View, effort: Effort): PanelMesh {
+        const { panels } = this.scenes![view.state];
+        const pixels = view.orbit.pixels(panels.edge, view.rect.height);
+        view.detail = detailFor(pixels, view.detail);
+        panels.setDetail(effort === "quick" ? "flat" : effort === "plain" && view.detail === "full" ? "prism" : view.detail, pixels);
+        return panels;
+    }
+
+    private render(effort: Effort): void {
+        const { renderer, scenes } = this;
         renderer.setScissorTest(false);
         renderer.setRenderTarget(null);
         renderer.setClearColor(0x000000, 0);
         renderer.clear();
-        if (!scenes) return false;
-        if (this.dirtyShadows && !quick) {
+        if (!scenes) return;
+        if (this.dirtyShadows && effort !== "quick") {
             for (const state of new Set(this.shown.map((id) => this.views[id].state))) scenes[state].castShadows();
             this.dirtyShadows = false;
         }
-        let moving = false;
         renderer.setScissorTest(true);
-        for (const id of this.shown) {
-            const view = this.views[id];
-            const { rect } = view;
-            if (rect.width < 2 || rect.height < 2) continue;
-            const scene = scenes[view.state];
-            moving = view.orbit.update(now, radiusOf(scene.bounds)) || moving;
-            const pixels = view.orbit.pixels(scene.panels.edge, rect.height);
-            view.detail = detailFor(pixels, view.detail);
-            scene.panels.setDetail(effort === "plain" && view.detail === "full" ? "prism" : view.detail, pixels);
-            scene.panels.setQuick(quick);
-            renderer.setViewport(rect.x, this.height - rect.y - rect.height, rect.width, rect.height);
-            renderer.setScissor(rect.x, this.height - rect.y - rect.height, rect.width, rect.height);
-            renderer.render(scene.scene, view.orbit.camera);
+        for (const view of this.seen) {
+            const { x, y, width, height } = view.rect;
+            this.setDetail(view, effort).group.visible = effort !== "quick";
+            renderer.setViewport(x, this.height - y - height, width, height);
+            renderer.setScissor(x, this.height - y - height, width, height);
+            renderer.render(scenes[view.state].scene, view.orbit.camera);
             for (const listener of this.drawn) listener(view);
         }
-        return moving;
+    }
+
+    private drawQuick(): void {
+        const ratio = this.screenRatio;
+        const picture = this.quickPictureOf(Math.floor(this.width * ratio), Math.floor(this.height * ratio));
+        if (!picture) return;
+        clear(picture);
+        const matrix = new THREE.Matrix4();
+        for (const view of this.seen) {
+            const { camera } = view.orbit;
+            const [x, y, width, height] = [view.rect.x, view.rect.y, view.rect.width, view.rect.height].map((v) => Math.round(v * ratio));
+            matrix.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+            this.setDetail(view, "quick").drawQuick(picture, { x, y, width, height, matrix: matrix.elements });
+        }
+        picture.context.putImageData(picture.image, 0, 0);
+    }
+
+    private quickPictureOf(width: number, height: number): QuickPicture | null {
+        if (!(width * height > 0)) return null; // not laid out yet
+        if (this.quickPicture?.width === width && this.quickPicture.height === height) return this.quickPicture;
+        Object.assign(this.quick, { width, height });
+        const picture = makePicture(width, height);
+        const bytes = new Uint8ClampedArray(picture.pixels.buffer as ArrayBuffer);
+        const context = this.quickPicture?.context ?? this.quick.getContext("2d", { willReadFrequently: true })!;
+        return (this.quickPicture = { ...picture, image: new ImageData(bytes, width, height), context });
     }
 
     private drawOverlay(): void {
@@ -368,22 +431,23 @@ export class Stage {
         for (const overlay of this.overlays) overlay(this.context2d, this);
     }
 
-    /** Calls `done` when the renderer has drawn all that it was given so far, and learns from how long that took. */
+    /** Calls `done` when all that was drawn so far is, and learns from how long whole pictures take. */
     private fly(done?: () => void): void {
-        const gl = this.renderer.getContext() as WebGL2RenderingContext;
         const began = performance.now();
         const effort = this.drawnWith;
         const land = () => {
             this.flying = false;
-            const took = performance.now() - began;
-            if (effort === "whole") this.wholeTimes = [this.wholeTimes[1], took];
-            else if (effort === "quick" && took > quickGoal.most) this.ratio = Math.min(ratios.length - 1, this.ratio + 1);
-            else if (effort === "quick" && took < quickGoal.least) this.ratio = Math.max(0, this.ratio - 1);
+            if (effort === "whole") this.wholeTimes = [this.wholeTimes[1], performance.now() - began];
             done?.();
             if (this.stale) this.schedule();
             else this.refineAfterRest();
         };
         this.flying = true;
+        if (!this.rendered) {
+            setTimeout(land); // after the frame that it goes into
+            return;
+        }
+        const gl = this.renderer.getContext() as WebGL2RenderingContext;
         const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
         gl.flush();
         const look = () => {

@@ -12,7 +12,10 @@ export class Newest<T> {
     put(value: T): void {
         const waits = this.next !== null;
         this.next = { value };
-        if (!waits) this.timer = setTimeout(() => this.leave(), Math.max(0, this.sent + every - performance.now()));
+        if (waits) return;
+        const wait = this.sent + every - performance.now();
+        if (wait > 0) this.timer = setTimeout(() => this.leave(), wait);
+        else queueMicrotask(() => this.leave()); // when the event has been dealt with
     }
 
     /** What has not left yet need not leave any more. */
@@ -22,7 +25,8 @@ export class Newest<T> {
     }
 
     private leave(): void {
-        const { value } = this.next!;
+        if (!this.next) return; // dropped
+        const { value } = this.next;
         this.next = null;
         this.sent = performance.now();
         this.send(value);

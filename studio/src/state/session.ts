@@ -30,8 +30,11 @@ export const making = signal(false);
  *  with every frame. */
 let shell: Shell | null = null;
 export const topology = signal(0);
-/** Rises with every frame, at most once per animation frame. */
+/** Rises with the frames, at most once per animation frame: for what is seen to move. */
+export const frames = signal(0);
+/** The same for words and figures: a few times a second while things move. */
 export const revision = signal(0);
+const readings = 150; // ms
 export const currentShell = () => shell;
 
 /** The panel edge L, for figures that are given over it. */
@@ -86,7 +89,7 @@ function remember(id: string): void {
 }
 
 /** States that may be on their way to the screen. */
-const ahead = 1;
+const ahead = 2;
 
 async function join(event: Hello): Promise<void> {
     const known = documentState.value?.id ?? rememberedDocument();
@@ -151,35 +154,43 @@ function showProblem(error: unknown, about: string): void {
     if (p.word !== "cancelled") problem.value = { error: p, about };
 }
 
-// The server sends a state when the last one is on screen, and then the newest: none waits here, and none is drawn late. Where
-// nothing draws them (no views, a hidden tab) they are acknowledged as they come.
+// The server sends a state when the last one was acknowledged, and then the newest: none waits here, and none is drawn late. They are
+// acknowledged as they come, unless the renderer is at a picture.
 let unseen = 0;
-let held = false;
-const acknowledge = (count: number) => {
-    for (let k = Math.min(count, unseen); k > 0; k--, unseen--) link?.tell("seen");
-};
+const never = () => false;
+let held: () => boolean = never;
+export function acknowledge(): void {
+    for (; unseen > 0; unseen--) link?.tell("seen");
+}
 
-/** From now on states wait to be drawn, until the function that is returned is called. */
-export function holdStates(): () => void {
-    held = true;
+/** From now on states that come while `busy` wait for `acknowledge`, until the function that is returned is called. */
+export function holdStates(busy: () => boolean): () => void {
+    held = busy;
     return () => {
-        held = false;
-        acknowledge(unseen);
+        held = never;
+        acknowledge();
     };
 }
+if (typeof document !== "undefined") document.addEventListener("visibilitychange", acknowledge);
 
-/** The states that came so far are in a picture; to be called when it is on screen. */
-export function takenStates(): () => void {
-    const count = unseen;
-    return () => acknowledge(count);
-}
-if (typeof document !== "undefined") document.addEventListener("visibilitychange", () => acknowledge(unseen));
-
-let pendingRevision = false;
+let pendingFrame = false;
+let readAt = -Infinity;
+let reading: ReturnType<typeof setTimeout> | undefined;
 /** Tells everyone that the shell has changed, if it has. */
-export function settleRevision(): void {
-    if (!pendingRevision) return;
-    pendingRevision = false;
+export function settleFrames(): void {
+    if (!pendingFrame) return;
+    pendingFrame = false;
+    const wait = shell?.moving ? readAt + readings - performance.now() : 0;
+    batch(() => {
+        frames.value++;
+        if (wait <= 0) read();
+        else reading ??= setTimeout(read, wait);
+    });
+}
+function read(): void {
+    clearTimeout(reading);
+    reading = undefined;
+    readAt = performance.now();
     revision.value++;
 }
 
@@ -189,7 +200,7 @@ function receiveBinary(frame: Frame): void {
         return;
     }
     unseen++;
-    if (!receiveState(frame) || !held || document.hidden) acknowledge(unseen);
+    if (!receiveState(frame) || !held() || document.hidden) acknowledge();
 }
 
 /** False when it is of a linkage that was replaced meanwhile. */
@@ -203,13 +214,14 @@ function receiveState(frame: Frame): boolean {
         linkage = true;
         batch(() => {
             topology.value++;
+            frames.value++;
             revision.value++;
         });
     } else shell.take(frame);
     for (const listener of shellListeners) listener(shell, { linkage, frame });
-    if (!pendingRevision) {
-        pendingRevision = true;
-        requestAnimationFrame(settleRevision);
+    if (!pendingFrame) {
+        pendingFrame = true;
+        requestAnimationFrame(settleFrames);
     }
     return true;
 }

@@ -4,7 +4,7 @@ import { type Scale, histogram, paint } from "../panels/colour";
 import { type Field, fieldById, fields } from "../panels/fields";
 import { rangeOf } from "../panels/measures";
 import type { Stage } from "../scene/stage";
-import { currentShell, report, revision, topology } from "./session";
+import { currentShell, frames, report, revision, topology } from "./session";
 
 export type Page = "start" | "work";
 export type Mode = "design" | "analyse" | "variants";
@@ -35,10 +35,9 @@ export interface FieldView {
     scale: Scale;
     range: [number, number];
     bins: Uint32Array;
-    tints: Uint8Array;
 }
 
-/** The field as it is now: values, scale, histogram and colours. */
+/** The field as it was read last: values, scale and histogram. */
 export const fieldView = computed<FieldView | null>(() => {
     revision.value;
     topology.value;
@@ -47,9 +46,18 @@ export const fieldView = computed<FieldView | null>(() => {
     const field = fieldById(fieldId.value);
     const values = field.values(shell);
     const scale = field.scale(values, shell);
-    const tints = new Uint8Array(4 * shell.linkage.panels);
-    paint(scale, values, tints);
-    return { field, values, scale, range: rangeOf(values), bins: histogram(values, scale.lo, scale.hi, 50), tints };
+    return { field, values, scale, range: rangeOf(values), bins: histogram(values, scale.lo, scale.hi, 50) };
+});
+
+/** The panels' colours as they are now, on the scale as it was read last: 4 bytes each. */
+export const tints = computed<Uint8Array | null>(() => {
+    frames.value;
+    const shell = currentShell();
+    const view = fieldView.value;
+    if (!shell || !view?.field.available(shell)) return null;
+    const out = new Uint8Array(4 * shell.linkage.panels);
+    paint(view.scale, view.field.values(shell), out);
+    return out;
 });
 
 export const availableFields = computed(() => {

@@ -9,9 +9,18 @@ export function decimals(value: number, significant: number): number {
     return Math.max(0, Math.min(6, significant - 1 - Math.floor(Math.log10(Math.abs(value)))));
 }
 
+const formats = new Map<number, Intl.NumberFormat>(); // making one takes far longer than using it
+function format(digits: number): Intl.NumberFormat {
+    const known = formats.get(digits);
+    if (known) return known;
+    const made = new Intl.NumberFormat("en-US", { minimumFractionDigits: digits, maximumFractionDigits: digits });
+    formats.set(digits, made);
+    return made;
+}
+
 export function number(value: number | null | undefined, digits: number): string {
     if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-    const text = Math.abs(value).toLocaleString("en-US", { minimumFractionDigits: digits, maximumFractionDigits: digits });
+    const text = format(digits).format(Math.abs(value));
     const zero = !/[1-9]/.test(text);
     return value < 0 && !zero ? `−${text}` : text;
 }

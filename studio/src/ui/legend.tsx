@@ -10,6 +10,13 @@ const width = 256;
 const chart = 36;
 const bar = 12;
 
+/** Where the panel under the cursor lies: apart, for the cursor moves more often than the rest changes. */
+function Under({ values, at }: { values: Float32Array; at: (value: number) => number }) {
+    const v = values[hovered.value] ?? NaN;
+    if (!Number.isFinite(v)) return null;
+    return <g stroke="var(--accent)" fill="var(--accent)" stroke-width="2"><path d={`M${at(v)} 4V${chart + bar + 2}`} /><circle cx={at(v)} cy="3" r="2" /></g>;
+}
+
 export function Legend() {
     const view = fieldView.value;
     const drag = useSignal<[number, number] | null>(null);
@@ -23,7 +30,6 @@ export function Legend() {
     const tickDigits = field.id === "lambda" ? 2 : Math.max(0, Math.min(6, -Math.floor(Math.log10((scale.hi - scale.lo) / 4) + 1e-9)));
     const rangeDigits = Math.max(field.digits, tickDigits);
     const signed = scale.lo < 0;
-    const under = hovered.value >= 0 && hovered.value < values.length ? values[hovered.value] : NaN;
     const limit = field.id === "lambda" && scaleLimit.value < scale.hi ? clampX(scaleLimit.value) : null;
     const valueAt = (event: PointerEvent) => {
         const box = (event.currentTarget as SVGElement).getBoundingClientRect();
@@ -70,9 +76,7 @@ export function Legend() {
                 {Number.isFinite(range[0]) && (
                     <path d={`M${clampX(range[0]) + 0.5} ${chart + bar + 3}v4H${clampX(range[1]) - 0.5}v-4`} fill="none" stroke="var(--text2)" />
                 )}
-                {Number.isFinite(under) && (
-                    <g stroke="var(--accent)" fill="var(--accent)" stroke-width="2"><path d={`M${clampX(under)} 4V${chart + bar + 2}`} /><circle cx={clampX(under)} cy="3" r="2" /></g>
-                )}
+                <Under values={values} at={clampX} />
                 {drag.value && <rect x={Math.min(clampX(drag.value[0]), clampX(drag.value[1]))} width={Math.abs(clampX(drag.value[0]) - clampX(drag.value[1]))} y="0" height={chart + bar + 2} fill="var(--accent)" opacity="0.2" />}
                 {ticks.map((k) => (
                     <text key={k} x={(k * width) / 4} y={chart + bar + 22} font-size="12" fill="var(--text2)" text-anchor={k === 0 ? "start" : k === 4 ? "end" : "middle"}>

@@ -44,6 +44,7 @@ const titles: Record<ViewId, string> = { flat: "Flat", deployed: "Deployed", top
 export function Views() {
     const place = useRef<HTMLDivElement>(null);
     const canvas = useRef<HTMLCanvasElement>(null);
+    const quick = useRef<HTMLCanvasElement>(null);
     const overlay = useRef<HTMLCanvasElement>(null);
     const rects = useSignal<Partial<Record<ViewId, Rect>>>({});
     const size = useSignal({ width: 0, height: 0 });
@@ -52,7 +53,7 @@ export function Views() {
     useLayoutEffect(() => {
         let stage: Stage;
         try {
-            stage = new Stage(canvas.current!, overlay.current!);
+            stage = new Stage(canvas.current!, quick.current!, overlay.current!);
         } catch {
             failed.value = "This browser has no WebGL 2, which the views need. Switch it on, or use another browser.";
             return;
@@ -87,7 +88,8 @@ export function Views() {
         <div class="views" ref={place} role="region" aria-label="Views" style={{ cursor: tool.value.cursor }}>
             {ids.map((id) => <div key={id} class="view-ground" style={box(rects.value[id]!)} />)}
             <canvas ref={canvas} aria-hidden="true" />
-            <canvas ref={overlay} class="overlay" aria-hidden="true" />
+            <canvas ref={quick} class="over" aria-hidden="true" hidden />
+            <canvas ref={overlay} class="over" aria-hidden="true" />
             {ids.map((id) => <ViewFrame key={id} id={id} rect={rects.value[id]!} many={ids.length > 1} />)}
             {ids.includes("flat") && ids.includes("deployed") && ids.length === 2 && <Divider width={size.value.width} />}
             <CursorTag />
@@ -252,12 +254,16 @@ function CursorTag() {
     const box_ = useRef<HTMLDivElement>(null);
     const hit = pointer.value;
     const words = hit && tool.value.tag ? tool.value.tag(hit) : null;
+    const size = useRef({ letters: 0, width: 0, height: 0 });
     useLayoutEffect(() => {
         const e = box_.current;
         if (!e || !hit) return;
+        const letters = e.textContent!.length;
+        if (letters !== size.current.letters) size.current = { letters, width: e.offsetWidth, height: e.offsetHeight }; // which lays out the page
+        const { width, height } = size.current;
         const { rect } = hit.view;
-        const x = Math.max(rect.x + 4, Math.min(rect.x + rect.width - e.offsetWidth - 4, hit.x - e.offsetWidth / 2));
-        const above = hit.y - tagDistance(hit) - e.offsetHeight;
+        const x = Math.max(rect.x + 4, Math.min(rect.x + rect.width - width - 4, hit.x - width / 2));
+        const above = hit.y - tagDistance(hit) - height;
         const y = above < rect.y + 4 ? hit.y + tagDistance(hit) : above;
         e.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
     });
@@ -273,9 +279,10 @@ function tagDistance(hit: Hit): number {
 function pointerEvents(place: HTMLElement, stage: Stage): () => void {
     let gesture: { kind: Gesture | "tool"; view: View; x: number; y: number; id: number } | null = null;
     const touches = new Map<number, { x: number; y: number }>();
+    let corner = place.getBoundingClientRect();
     const local = (event: { clientX: number; clientY: number }) => {
-        const r = place.getBoundingClientRect();
-        return { x: event.clientX - r.left, y: event.clientY - r.top };
+        if (!gesture) corner = place.getBoundingClientRect(); // which may lay out the page
+        return { x: event.clientX - corner.left, y: event.clientY - corner.top };
     };
     const hitOf = (event: PointerEvent, view: View, double = false): Hit => {
         const { x, y } = local(event);
@@ -318,6 +325,7 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
             lastDown = event.timeStamp;
             const hit = hitOf(event, view, double);
             hover(hit);
+            handMoved(event.timeStamp);
             if (tool.value.down?.(hit)) gesture = { kind: "tool", view, ...at, id: event.pointerId };
         }
         event.preventDefault();
@@ -354,15 +362,20 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
             if (pointer.value) leave();
             return;
         }
-        // browsers gather what moved between two frames; a stroke wants every place
-        handMoved(event.timeStamp);
-        const events = gesture && event.getCoalescedEvents ? event.getCoalescedEvents() : [event];
-        for (const e of events.length ? events.slice(-6) : [event]) {
-            const hit = hitOf(e, view);
-            hover(hit);
-            tool.value.move?.(hit, gesture !== null);
-        }
+        const hit = hitOf(event, view);
+        hover(hit);
+        if (!gesture) tool.value.move?.(hit, false);
+        else if (!hearsAll) work(event);
         stage.invalidateOverlay();
+    };
+    // while a tool is at work it hears of movements at once, where the browser tells of them before the next frame
+    const hearsAll = "onpointerrawupdate" in place;
+    const work = (event: PointerEvent) => {
+        if (gesture?.kind !== "tool") return;
+        handMoved(event.timeStamp);
+        // browsers gather what moved meanwhile; a stroke wants every place
+        const events = event.getCoalescedEvents?.() ?? [];
+        for (const e of events.length ? events.slice(-6) : [event]) tool.value.move?.(hitOf(e, gesture.view), true);
     };
     const up = (event: PointerEvent) => {
         touches.delete(event.pointerId);
@@ -407,7 +420,7 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
     };
     const menu = (event: Event) => event.preventDefault();
     const events: [string, (event: never) => void, AddEventListenerOptions?][] = [
-        ["pointerdown", down], ["pointermove", move], ["pointerup", up], ["pointercancel", lost], ["pointerleave", leave],
+        ["pointerdown", down], ["pointermove", move], ["pointerrawupdate", work], ["pointerup", up], ["pointercancel", lost], ["pointerleave", leave],
         ["wheel", wheel, { passive: false }], ["contextmenu", menu],
     ];
     for (const [name, listener, options] of events) place.addEventListener(name, listener as EventListener, options);

@@ -1,0 +1,127 @@
+// Panels drawn without a graphics card: one flat triangle each, put into an array of pixels with a depth per pixel. What moves is
+// drawn so where WebGL itself is software, which takes ten times as long for the same picture.
+
+/** RGBA bytes as numbers of 32 bits (little-endian), and depths, nearer is less; rows from the top down. */
+export interface Picture {
+    width: number;
+    height: number;
+    pixels: Uint32Array;
+    depth: Float32Array;
+}
+
+/** Part of a picture in pixels, and the matrix (4 x 4, column by column) from places to -1..1 across it. */
+export interface Window {
+    x: number;
+    y: number;
+    width: number;
+    height: number;
+    matrix: ArrayLike<number>;
+}
+
+/** What is drawn over a panel: outline and marks, as colours 0xBBGGRR. */
+export interface Inks {
+    line: number;
+    lineAlpha: number;
+    accent: number;
+    hatch: number;
+}
+
+export const makePicture = (width: number, height: number): Picture =>
+    ({ width, height, pixels: new Uint32Array(width * height), depth: new Float32Array(width * height) });
+
+export function clear(picture: Picture): void {
+    picture.pixels.fill(0);
+    picture.depth.fill(Infinity);
+}
+
+/** Share s of b, the rest of a; 0xBBGGRR. */
+function mix(a: number, b: number, s: number): number {
+    const k = Math.round(256 * s);
+    const two = (((a & 0xff00ff) * (256 - k) + (b & 0xff00ff) * k) >>> 8) & 0xff00ff;
+    return two | ((((a >>> 8) & 0xff) * (256 - k) + ((b >>> 8) & 0xff) * k) & 0xff00);
+}
+
+let screen = new Float32Array(0);
+
+/** Places (3 per hinge) in the picture: x and y in pixels, and depth; a depth that is none where a place is behind the eye. */
+function project(places: Float32Array, { x, y, width, height, matrix: m }: Window): void {
+    if (screen.length < places.length) screen = new Float32Array(places.length);
+    for (let i = 0; i < places.length; i += 3) {
+        const [px, py, pz] = [places[i], places[i + 1], places[i + 2]];
+        const w = m[3] * px + m[7] * py + m[11] * pz + m[15];
+        const s = w > 1e-9 ? 1 / w : NaN;
+        screen[i] = x + 0.5 * width * (1 + (m[0] * px + m[4] * py + m[8] * pz + m[12]) * s);
+        screen[i + 1] = y + 0.5 * height * (1 - (m[1] * px + m[5] * py + m[9] * pz + m[13]) * s);
+        screen[i + 2] = (m[2] * px + m[6] * py + m[10] * pz + m[14]) * s;
+    }
+}
+
+/** An outline's half width and the softness of its inner side, pixels. */
+const [lineFrom, lineTo] = [0.4, 1.2];
+
+/**
+ * Draws panels (3 hinges each) within the window. `colour` gives what a side of a panel looks like, 0xBBGGRR; `marks` are 0 for none,
+ * 128 selected, 192 hatched. Edges are smooth by the share of a pixel that they cover.
+ */
+export function drawPanels(picture: Picture, window: Window, places: Float32Array, triangles: Uint32Array,
+    colour: (panel: number, front: boolean) => number, marks: Uint8Array, inks: Inks): void {
+    const { pixels, depth } = picture;
+    const left = Math.max(0, window.x), top = Math.max(0, window.y);
+    const right = Math.min(picture.width, window.x + window.width), bottom = Math.min(picture.height, window.y + window.height);
+    project(places, window);
+    for (let t = 0; t < marks.length; t++) {
+        const a = 3 * triangles[3 * t];
+        let b = 3 * triangles[3 * t + 1], c = 3 * triangles[3 * t + 2];
+        const ax = screen[a], ay = screen[a + 1], az = screen[a + 2];
+        let area = (screen[b] - ax) * (screen[c + 1] - ay) - (screen[c] - ax) * (screen[b + 1] - ay);
+        if (!(Math.abs(area) > 1e-6)) continue; // on edge, or behind the eye
+        const front = area < 0; // counter-clockwise, and y points down
+        if (front) {
+            [b, c] = [c, b];
+            area = -area;
+        }
+        const bx = screen[b], by = screen[b + 1], cx = screen[c], cy = screen[c + 1];
+        const x0 = Math.max(left, Math.floor(Math.min(ax, bx, cx) - 0.5)), x1 = Math.min(right, Math.ceil(Math.max(ax, bx, cx) + 0.5));
+        const y0 = Math.max(top, Math.floor(Math.min(ay, by, cy) - 0.5)), y1 = Math.min(bottom, Math.ceil(Math.max(ay, by, cy) + 0.5));
+        if (x0 >= x1 || y0 >= y1) continue;
+        // distances in pixels from the three edges, positive inside: d = u x + v y + w
+        const la = 1 / Math.hypot(bx - ax, by - ay), lb = 1 / Math.hypot(cx - bx, cy - by), lc = 1 / Math.hypot(ax - cx, ay - cy);
+        const ua = (ay - by) * la, va = (bx - ax) * la, ub = (by - cy) * lb, vb = (cx - bx) * lb, uc = (cy - ay) * lc, vc = (ax - cx) * lc;
+        const wa = -ua * ax - va * ay, wb = -ub * bx - vb * by, wc = -uc * cx - vc * cy;
+        const bz = screen[b + 2] - az, cz = screen[c + 2] - az;
+        const zx = (bz * (cy - ay) - cz * (by - ay)) / area, zy = (cz * (bx - ax) - bz * (cx - ax)) / area;
+        const mark = marks[t];
+        const selected = mark === 128;
+        const face = selected ? mix(colour(t, front), inks.accent, 0.12) : colour(t, front);
+        const line = selected ? inks.accent : inks.line;
+        const alpha = selected ? 1 : inks.lineAlpha;
+        for (let y = y0; y < y1; y++) {
+            const v = y + 0.5;
+            const [da, db, dc] = [va * v + wa, vb * v + wb, vc * v + wc];
+            const z = az + zx * (0.5 - ax) + zy * (v - ay);
+            let inside = false;
+            for (let x = x0, i = y * picture.width + x0; x < x1; x++, i++) {
+                const u = x + 0.5;
+                const d = Math.min(ua * u + da, ub * u + db, uc * u + dc);
+                if (d <= -0.5) {
+                    if (inside) break;
+                    continue;
+                }
+                inside = true;
+                const near = z + zx * x;
+                if (near >= depth[i]) continue;
+                const ground = mark === 192 && (((x + y) & 7) > 4) ? inks.hatch : face;
+                const ink = d < lineTo ? mix(ground, line, alpha * Math.min(1, (lineTo - d) / (lineTo - lineFrom))) : ground;
+                if (d >= 0.5) {
+                    pixels[i] = ink | 0xff000000;
+                    depth[i] = near;
+                } else { // covers a share of the pixel, over what is there
+                    const under = pixels[i], before = under >>> 24;
+                    const after = before + (255 - before) * (d + 0.5);
+                    pixels[i] = mix(under & 0xffffff, ink, (255 * (d + 0.5)) / after) | (Math.round(after) << 24);
+                    if (d >= 0) depth[i] = near;
+                }
+            }
+        }
+    }
+}
