@@ -138,6 +138,8 @@ void ax_form_put_underlay(ax_form* form, const char* name, const ax_mesh* mesh, 
 
 // A visual update: so many projective iterations of every state. Keeps multipliers, so that the hand feels no jump.
 void ax_form_iterate(ax_form* form, int iterations);
+// Iterates with so many threads from now on, as many as there are cores unless told; what it computes is the same for any number.
+void ax_form_use_threads(ax_form* form, int threads);
 // Iterates until the states rest or `iterations` are done (0: 400, and up to five times that while edges are still off). AX_CANCELLED leaves
 // the form as it was before the call, and so does AX_CANNOT_REALISE: a load on a form that nothing holds. What could not be met is in the
 // report; the return is AX_OK all the same.
@@ -174,12 +176,13 @@ typedef struct ax_form_view {
     const double (*flat)[2];      // hinge places
     const double (*deployed)[3];  // fully open as far as rim and constraints allow
     const double (*simulated)[3]; // under the load; NULL without one
-    const double*
-        opening; // per hole: area over that of the cyclic polygon of its sides; of the simulated state if there is one
-    const double* material; // per hinge: largest multiplier over L; above 2 and rising: too little material here
-    unsigned revision;      // rises with every change
+    unsigned revision;            // rises with every change
 } ax_form_view;
 ax_form_view ax_form_look(ax_form* form);
+// Measured when asked for; borrowed likewise. Per hole: area over that of the cyclic polygon of its sides, of the simulated state if
+// there is one. Per hinge: largest multiplier over L; above 2 and rising: too little material here.
+const double* ax_form_opening(ax_form* form);
+const double* ax_form_material(ax_form* form);
 
 // The present states as a design of its own, exact or not, for pictures and exports; `loaded`: the loaded state takes the place of the
 // deployed one. Freed by ax_design_free.

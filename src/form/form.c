@@ -229,6 +229,20 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
     return f;
 }
 
+void ax_form_use_threads(ax_form* f, int threads)
+{
+    if (ax_pool_threads(f->pool) == threads)
+        return;
+    size_t count;
+    double* multipliers = ax_form_multipliers(f, &count);
+    ax_form_drop_solvers(f); // they borrow the pool
+    ax_free(f->pending);
+    f->pending = multipliers;
+    f->pending_count = count;
+    ax_pool_free(f->pool);
+    f->pool = ax_pool_make(threads);
+}
+
 void ax_form_free(ax_form* f)
 {
     if (!f)

@@ -92,7 +92,7 @@ int ax_form_folds(const ax_form* f, const double (*x)[3], int first[2])
 }
 
 // Area of each hole over that of the cyclic polygon with its sides; 1 where the sides reach no polygon.
-static void measure_opening(ax_form* f)
+const double* ax_form_opening(ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
     const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
@@ -117,9 +117,10 @@ static void measure_opening(ax_form* f)
         }
         f->opening[k] = most > 0 ? ax_norm3(normal) / most : 1;
     }
+    return f->opening;
 }
 
-static void measure_material(ax_form* f)
+const double* ax_form_material(ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
     double mean = ax_form_sides_mean(f);
@@ -127,20 +128,19 @@ static void measure_material(ax_form* f)
     ax_solver* s = ax_form_hangs(f) ? f->hang : f->shape;
     const ax_form_groups* g = ax_form_hangs(f) ? &f->hang_groups : &f->shape_groups;
     if (f->stale || !s)
-        return;
+        return f->material;
     for (int t = 0; t < linkage->triangle_count; ++t) {
         double u = ax_solver_multiplier(s, g->panels, t) / mean;
         for (int k = 0; k < 3; ++k)
             f->material[linkage->triangles[t][k]] = fmax(f->material[linkage->triangles[t][k]], u);
     }
+    return f->material;
 }
 
 ax_form_view ax_form_look(ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
     ax_measure_scale(linkage, (const double(*)[2])f->flat, f->realised);
-    measure_opening(f);
-    measure_material(f);
     return (ax_form_view){.linkage = linkage,
                           .unit = f->unit,
                           .spacing = f->lattice.spacing,
@@ -150,8 +150,6 @@ ax_form_view ax_form_look(ax_form* f)
                           .flat = (const double(*)[2])f->flat,
                           .deployed = (const double(*)[3])f->deployed,
                           .simulated = ax_form_hangs(f) ? (const double(*)[3])f->simulated : NULL,
-                          .opening = f->opening,
-                          .material = f->material,
                           .revision = f->revision};
 }
 
@@ -636,6 +634,8 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
     const double(*flat)[2] = (const double(*)[2])f->flat;
     bool moved = f->dynamics.kind != AX_DYNAMICS_NONE, hangs = ax_form_hangs(f);
     ax_form_look(f);
+    ax_form_opening(f);
+    ax_form_material(f);
     *r =
         (ax_form_report){.exact = f->exact, .iterations = f->iterations, .growth = f->growth, .scale_off_triangle = -1};
     r->edge = ax_form_sides_mean(f);

@@ -15,7 +15,7 @@
 
 // A visual update, unless the hand would wait for it longer than `patience`; after what the hand did, than `reaction`.
 enum { ITERATIONS = 10 };
-static const double patience = 0.02, reaction = 0.008;
+static const double patience = 0.02, reaction = 0.005;
 static const double quick_report = 0.01; // a longer one waits until the hand rests
 static const double frame_seconds = 1.0 / 60, rest_seconds = 1.0 / 15, report_seconds = 0.5, progress_seconds = 0.25;
 static const double rest_move = 1e-4; // of the sheet's spacing per update: nothing a screen shows moves any more
@@ -199,8 +199,11 @@ static double publish(desk* d, bool whole)
     const ax_design* exact = shown_exact(d);
     bool renewed = !same_linkage(&d->board, v.linkage); // only this thread writes the board
     whole |= renewed;
-    if (whole)
-        measures = shape_measure(&v);
+    if (whole) {
+        double start = ax_seconds();
+        measures = shape_measure(form, &v);
+        d->measure_time = ax_seconds() - start;
+    }
     hub_lock(d->hub);
     board* b = &d->board;
     unsigned before = b->stamp, flags = b->flags;
@@ -283,7 +286,7 @@ static void measure(desk* d)
     ax_form_report_free(&d->report);
     ax_form_measure(form, &d->report);
     ax_form_view v = ax_form_look(form);
-    shape_measures m = shape_measure(&v);
+    shape_measures m = shape_measure(form, &v);
     const ax_design* exact = shown_exact(d);
     post(d, SLOT_REPORT, describe_report(d->board.revision, &d->report, &v, &m, exact, !d->moving && !d->busy));
     shape_measures_free(&m);
@@ -297,9 +300,14 @@ static const char* solver_word(const desk* d)
 }
 
 // While things move: places always, the rest seldom, the report seldomer still.
+static double publish_moving(desk* d)
+{
+    return publish(d, ax_seconds() - d->measured > fmax(rest_seconds, 10 * d->measure_time));
+}
+
 static double show_moving(desk* d)
 {
-    double now = ax_seconds(), move = publish(d, now - d->measured > rest_seconds);
+    double now = ax_seconds(), move = publish_moving(d);
     bool at_hand = d->report_time > quick_report && now - d->hand_moved < report_seconds;
     if (!at_hand && now - d->reported > fmax(report_seconds, 10 * d->report_time)) {
         measure(d);
@@ -347,7 +355,7 @@ static bool report_progress(void* context, const char* stage, double fraction, d
     desk* d = context;
     double now = ax_seconds();
     if (desk_form(d) && !d->live_shown && now - d->published >= frame_seconds) {
-        publish(d, now - d->measured > rest_seconds);
+        publish_moving(d);
         d->rested = false;                          // it was shown as moving
         if (!d->opened && d->opener && !d->watched) // once: who looks at something else meanwhile is left alone
             hub_show_making(d->hub, d->opener, d);
@@ -385,6 +393,13 @@ static void end_work(desk* d)
 
 // ---- the hand -----------------------------------------------------------------------------------------------------------------
 
+// Solving leaves a core to what draws: threads that work in step wait for the slowest.
+static int hand_threads(void)
+{
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    return cores > 2 ? (int)cores - 1 : 1;
+}
+
 // A copy of the settled form that the hand may pull about: the document's own stays as it is.
 static bool begin_live(desk* d)
 {
@@ -399,6 +414,7 @@ static bool begin_live(desk* d)
             return false;
         ax_form_view v = ax_form_look(d->live);
         ax_free(d->live_scale);
+        ax_form_use_threads(d->live, hand_threads());
         d->live_scale = ax_copy(v.prescribed, (size_t)v.linkage->triangle_count, sizeof *d->live_scale);
         d->live_fresh = true;
         free(d->live_op);
@@ -407,11 +423,21 @@ static bool begin_live(desk* d)
     return true;
 }
 
+// Several at once take less time than one by one.
+static void iterate(desk* d, int count)
+{
+    double start = ax_seconds();
+    ax_form_iterate(d->live, count);
+    d->iteration_time = (ax_seconds() - start) / count;
+}
+
 // While nothing else is to be done: the copy, with its solvers made, so that the next gesture starts at once.
 static void get_ready(desk* d)
 {
+    d->ready = true;
     if (!d->live_fresh && begin_live(d))
-        ax_form_iterate(d->live, 1);
+        for (int k = 0; k < 2; ++k) // the second one tells how long one takes
+            iterate(d, 1);
 }
 
 static void use_live(desk* d)
@@ -428,7 +454,7 @@ void desk_end_live(desk* d)
     hub_unlock(d->hub);
     if (d->live_shown)
         d->live_fresh = false;
-    d->live_shown = d->previewing = d->moving = d->holding = d->rested = false;
+    d->live_shown = d->previewing = d->moving = d->holding = d->rested = d->ready = false;
     d->hand_serial = 0;
     d->hand_of_serial = 0;
 }
@@ -463,8 +489,9 @@ static void advance(desk* d, double seconds, bool first)
 {
     double start = ax_seconds();
     bool left = false;
-    for (int done = 0; done < ITERATIONS && !left && (!done || ax_seconds() - start < seconds); ++done) {
-        ax_form_iterate(d->live, 1);
+    for (int done = 0, count; done < ITERATIONS && !left && (!done || ax_seconds() - start < seconds); done += count) {
+        count = d->iteration_time > 0 ? (int)ax_clamp(reaction / d->iteration_time, 1, ITERATIONS - done) : 1;
+        iterate(d, count);
         left = !first && outdated(d);
     }
     d->update_time = ax_seconds() - start;
@@ -713,6 +740,10 @@ static bool work_once(desk* d)
             hub_unlock(d->hub);
             show_rest(d);
             show_document(d);
+            return true;
+        }
+        if (!d->ready) {
+            hub_unlock(d->hub);
             get_ready(d);
             return true;
         }

@@ -59,7 +59,7 @@ struct desk {
     double* live_scale;         // its prescribed factors before the gesture
     char* live_op;              // the operator that is being previewed
     bool watched;               // it was shown while it was made
-    bool live_fresh, live_shown, previewing, holding, moving, busy, rested, was_exact;
+    bool live_fresh, live_shown, previewing, holding, moving, busy, rested, ready, was_exact;
     unsigned hand_serial;
     int hand_of_serial;
     int still; // updates in which nothing moved
@@ -67,7 +67,8 @@ struct desk {
     double (*last_places)[3], (*last_flat)[2]; // as published last
     int last_count;
     ax_form_report report;
-    double published, measured, reported, report_time, update_time, settle_time, move_start, hand_moved;
+    double published, measured, measure_time, reported, report_time, iteration_time, update_time, settle_time,
+        move_start, hand_moved;
     const char* job_name;
     int job_id;
     double job_start, progressed;

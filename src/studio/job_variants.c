@@ -59,7 +59,7 @@ static ax_status keep(desk* d, const job* j, json_t** result, ax_error* error)
     ax_form_view view = ax_form_look(form);
     ax_form_report report;
     ax_form_measure(form, &report);
-    shape_measures measures = shape_measure(&view);
+    shape_measures measures = shape_measure(form, &view);
     json_t* figures = json_pack("{s:i, s:b, s:o}", "triangles", view.linkage->triangle_count, "exact", d->exact != NULL,
                                 "checks", describe_checks(&report, &view, &measures, d->exact, true));
     char* text = json_dumps(figures, JSON_COMPACT);
@@ -96,7 +96,7 @@ static ax_status look(desk* d, const job* j, json_t** result, ax_error* error)
         return status;
     board b = {0};
     ax_form_view view = ax_form_look(form);
-    shape_measures measures = shape_measure(&view);
+    shape_measures measures = shape_measure(form, &view);
     shape_frame frame = shape_new_linkage(&b, &view);
     shape_put_places(&b, &view, &frame);
     shape_put_rest(&b, &view, &measures);

@@ -20,11 +20,13 @@ static double* edge_residuals(const ax_form_view* v, const double (*places)[3])
     return residual;
 }
 
-shape_measures shape_measure(const ax_form_view* v)
+shape_measures shape_measure(ax_form* form, const ax_form_view* v)
 {
     shape_measures m = {.mouth = ax_measure_mouth_angles(v->linkage, v->flat),
                         .residual = edge_residuals(v, v->simulated ? v->simulated : v->deployed),
-                        .curvature = AX_NEW(double, v->linkage->triangle_count)};
+                        .curvature = AX_NEW(double, v->linkage->triangle_count),
+                        .opening = ax_form_opening(form),
+                        .material = ax_form_material(form)};
     ax_measure_mean_curvature(v->linkage, v->deployed, m.curvature);
     for (int h = 0; h < v->linkage->hinge_count; ++h)
         if (!isfinite(m.mouth[h]))
@@ -88,14 +90,14 @@ void shape_put_places(board* b, const ax_form_view* v, const shape_frame* frame)
     else
         board_clear(b, SECTION_SIMULATED, SECTION_F32);
     board_put_numbers(b, SECTION_PRESCRIBED, v->linkage->triangle_count, v->prescribed, 1, NULL);
+    board_put_numbers(b, SECTION_REALISED, v->linkage->triangle_count, v->realised, 1, NULL);
 }
 
 void shape_put_rest(board* b, const ax_form_view* v, const shape_measures* m)
 {
     const ax_linkage* l = v->linkage;
-    board_put_numbers(b, SECTION_REALISED, l->triangle_count, v->realised, 1, NULL);
-    board_put_numbers(b, SECTION_OPENING, l->hole_count, v->opening, 1, NULL);
-    board_put_numbers(b, SECTION_MATERIAL, l->hinge_count, v->material, 1, NULL);
+    board_put_numbers(b, SECTION_OPENING, l->hole_count, m->opening, 1, NULL);
+    board_put_numbers(b, SECTION_MATERIAL, l->hinge_count, m->material, 1, NULL);
     board_put_numbers(b, SECTION_MOUTH, l->hinge_count, m->mouth, 1, NULL);
     board_put_numbers(b, SECTION_RESIDUAL, l->triangle_count, m->residual, 1, NULL);
     board_put_numbers(b, SECTION_CURVATURE, l->triangle_count, m->curvature, 1, NULL);

@@ -12,11 +12,12 @@ typedef struct shape_frame {
 
 // Measures that take time, made without the hub's lock.
 typedef struct shape_measures {
-    double* mouth;     // per hinge
-    double* residual;  // per triangle
-    double* curvature; // per triangle
+    double* mouth;                    // per hinge
+    double* residual;                 // per triangle
+    double* curvature;                // per triangle
+    const double *opening, *material; // the form's own
 } shape_measures;
-shape_measures shape_measure(const ax_form_view* view);
+shape_measures shape_measure(ax_form* form, const ax_form_view* view);
 void shape_measures_free(shape_measures* m);
 
 shape_frame shape_new_linkage(board* b, const ax_form_view* view);

@@ -20,6 +20,7 @@ static const ax_field fields[] = {
 static void tighten_once(ax_form* form)
 {
     ax_form_view view = ax_form_look(form);
+    const double* open = ax_form_opening(form);
     const ax_linkage* l = view.linkage;
     int n = l->triangle_count;
     double *opening = AX_NEW0(double, l->hinge_count), *u = AX_NEW(double, n);
@@ -28,7 +29,7 @@ static void tighten_once(ax_form* form)
     memset(chosen, 1, (size_t)n);
     for (int k = 0; k < l->hole_count; ++k)
         for (int i = l->hole_start[k]; i < l->hole_start[k + 1]; ++i) {
-            opening[l->hole_hinges[i]] += view.opening[k];
+            opening[l->hole_hinges[i]] += open[k];
             ++holes[l->hole_hinges[i]];
         }
     for (int t = 0; t < n; ++t) {
