@@ -108,12 +108,17 @@ export class Link {
 export function socketTo(location: Location): Connect {
     const secret = location.pathname.split("/")[1] ?? "";
     return (events) => {
-        const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws?key=${encodeURIComponent(secret)}`);
-        socket.binaryType = "arraybuffer";
-        socket.onopen = () => events.open();
-        socket.onmessage = ({ data }) => (typeof data === "string" ? events.text(data) : events.binary(data as ArrayBuffer));
-        socket.onclose = () => events.closed();
-        return { send: (text) => socket.send(text), close: () => socket.close() };
+        const worker = new Worker(new URL("./socket-worker.ts", import.meta.url), { type: "module", name: "socket" });
+        worker.onmessage = ({ data }: MessageEvent<boolean | string | ArrayBuffer>) => {
+            if (data === true) events.open();
+            else if (data === false) {
+                worker.terminate();
+                events.closed();
+            } else if (typeof data === "string") events.text(data);
+            else events.binary(data);
+        };
+        worker.postMessage(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws?key=${encodeURIComponent(secret)}`);
+        return { send: (text) => worker.postMessage(text), close: () => worker.terminate() };
     };
 }
 
