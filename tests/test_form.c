@@ -227,8 +227,11 @@ static void stored_forms_go_on_with_the_same_bits(void** state)
     copy = ax_form_save(other, &again);
     assert_int_equal(size, again);
     assert_memory_equal(bytes, copy, size);
-    ax_form_iterate(form, 30);
-    ax_form_iterate(other, 30);
+    for (int threads = 3; threads > 0; threads -= 2) { // also where the number of threads changes on the way
+        ax_form_use_threads(other, threads);
+        ax_form_iterate(form, 30);
+        ax_form_iterate(other, 30);
+    }
     size_t n = (size_t)ax_form_look(form).linkage->hinge_count;
     assert_memory_equal(ax_form_look(form).simulated, ax_form_look(other).simulated, n * 3 * sizeof(double));
     assert_memory_equal(ax_form_look(form).flat, ax_form_look(other).flat, n * 2 * sizeof(double));

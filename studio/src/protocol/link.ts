@@ -107,18 +107,19 @@ export class Link {
 /** The server's socket, found from the page's own address: the secret is the first part of the path. */
 export function socketTo(location: Location): Connect {
     const secret = location.pathname.split("/")[1] ?? "";
+    const address = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws?key=${encodeURIComponent(secret)}`;
+    // one for as long as the page lasts: without a server there is none to be had
+    const worker = new Worker(new URL("./socket-worker.ts", import.meta.url), { type: "module", name: "socket" });
     return (events) => {
-        const worker = new Worker(new URL("./socket-worker.ts", import.meta.url), { type: "module", name: "socket" });
-        worker.onmessage = ({ data }: MessageEvent<boolean | string | ArrayBuffer>) => {
+        const { port1: port, port2 } = new MessageChannel();
+        port.onmessage = ({ data }: MessageEvent<boolean | string | ArrayBuffer>) => {
             if (data === true) events.open();
-            else if (data === false) {
-                worker.terminate();
-                events.closed();
-            } else if (typeof data === "string") events.text(data);
+            else if (data === false) events.closed();
+            else if (typeof data === "string") events.text(data);
             else events.binary(data);
         };
-        worker.postMessage(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws?key=${encodeURIComponent(secret)}`);
-        return { send: (text) => worker.postMessage(text), close: () => worker.terminate() };
+        worker.postMessage(address, [port2]);
+        return { send: (text) => port.postMessage(text), close: () => port.postMessage(null) };
     };
 }
 

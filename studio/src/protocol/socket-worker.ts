@@ -1,15 +1,10 @@
-// The socket, apart from the page: a state comes in dozens of pieces, and each would wait until the page has drawn. The first message
-// is the address, the others are what is to be sent. Told to the page: true when it is open, false when it is closed, and what came.
-let socket: WebSocket | null = null;
-
-addEventListener("message", ({ data }: MessageEvent<string>) => {
-    if (socket) {
-        socket.send(data);
-        return;
-    }
-    socket = new WebSocket(data);
+// Sockets apart from the page: a state comes in dozens of pieces, and each would wait until the page has drawn. Asked for by address,
+// with a port: what comes in through it is sent, null closes; told through it are true for open, false for closed, and what came.
+addEventListener("message", ({ data: address, ports: [port] }: MessageEvent<string>) => {
+    const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
-    socket.onopen = () => postMessage(true);
-    socket.onclose = () => postMessage(false);
-    socket.onmessage = ({ data: came }) => postMessage(came, { transfer: typeof came === "string" ? [] : [came] });
+    socket.onopen = () => port.postMessage(true);
+    socket.onclose = () => port.postMessage(false);
+    socket.onmessage = ({ data }) => port.postMessage(data, typeof data === "string" ? [] : [data]);
+    port.onmessage = ({ data }: MessageEvent<string | null>) => (data === null ? socket.close() : socket.send(data));
 });
