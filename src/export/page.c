@@ -225,23 +225,44 @@ static ax_status write_pages(const ax_cut_plan* plan, int page_count, const page
     return ax_pdf_close(&pdf, plan->title, plan->date, path, error);
 }
 
+// mm: 14,400 units, beyond which Acrobat shows nothing. Larger units are allowed since PDF 1.6, but not known to all programs, which then
+// show the page at another size.
+static const double longest_page = 14400 * 25.4 / 72;
+
+static ax_status check_sizes(const ax_cut_plan* plan, ax_error* error)
+{
+    for (int k = 0; k < plan->sheet_count; ++k) {
+        const ax_cut_sheet* s = &plan->sheets[k];
+        if (fmax(s->width, s->height) > longest_page)
+            return ax_fail(
+                error, AX_CANNOT_REALISE,
+                "Sheet %d of %d is %.0f x %.0f mm; a PDF page is %.0f mm long at most, larger ones are not "
+                "shown by all programs. Choose smaller sheets, or write .a4.pdf (pages to be glued), .dxf or "
+                ".svg.",
+                k + 1, plan->sheet_count, s->width, s->height, longest_page);
+    }
+    return AX_OK;
+}
+
 ax_status ax_page_sheets(const ax_cut_plan* plan, const char* path, ax_error* error)
 {
-    static const double most =
-        14400 * 25.4 / 72; // mm, what Acrobat shows; the overview is not to be cut and may shrink
+    ax_status status = check_sizes(plan, error);
+    if (status != AX_OK)
+        return status;
     int count = 0, *items = AX_NEW(int, plan->item_count);
     page* pages = AX_NEW0(page, plan->sheet_count + 1);
     for (int i = 0; i < plan->item_count; ++i)
         items[i] = i;
     for (int k = plan->overview.count ? -1 : 0; k < plan->sheet_count; ++k) {
         const ax_cut_sheet* s = k < 0 ? &plan->overview : plan->sheets + k;
-        double scale = k < 0 ? fmin(1, most / fmax(s->width, s->height)) : 1;
+        // the overview is not to be cut, and may shrink
+        double scale = k < 0 ? fmin(1, longest_page / fmax(s->width, s->height)) : 1;
         pages[count++] = (page){.size = {scale * s->width, scale * s->height},
                                 .scale = scale,
                                 .items = items + s->first,
                                 .item_count = s->count};
     }
-    ax_status status = write_pages(plan, count, pages, path, error);
+    status = write_pages(plan, count, pages, path, error);
     ax_free(pages);
     ax_free(items);
     return status;

@@ -11,7 +11,7 @@ static ax_status write_sheet(const ax_design* design, const ax_cut_plan* plan, i
 const ax_export_type ax_export_pdf = {
     .ending = ".pdf",
     .name = "PDF drawing",
-    .doc = "The sheets at true size, one to a page.",
+    .doc = "The sheets at true size, one to a page of at most 5080 mm.",
     .default_state = AX_STATE_FLAT,
     .states = {[AX_STATE_DEFAULT] = true, [AX_STATE_FLAT] = true},
     .write_sheet = write_sheet,
