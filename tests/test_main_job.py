@@ -104,6 +104,21 @@ class MainJob(CommandCase):
         self.assertGreater(info["projection"]["curvature_min"], 0)
         self.assertTrue(info["repairs"]["turned_outward"])
 
+    def test_a_coarse_target_is_refined(self):
+        side = range(-2, 3)
+        quads = "".join(f"v {x / 2} {y / 2} {0.6 - 0.075 * (x * x + y * y)}\n" for x in side for y in side)
+        quads += "".join(f"f {a} {a + 5} {a + 6} {a + 1}\n" for row in range(4) for a in range(5 * row + 1, 5 * row + 5))
+        coarse, out = self.folder / "coarse.obj", self.folder / "d.auxshell"
+        coarse.write_text(quads)
+        done = run("design", coarse, "-o", out, "--triangles", "300")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("--refine", done.stderr)
+        words = self.succeed("design", coarse, "-o", out, "--triangles", "300", "--refine")
+        self.assertIn("Every limit holds", words)
+        faces, move = re.search(r"Refined .* (\d+) faces; ([0-9.]+) m off its vertices", words).groups()
+        self.assertEqual(int(faces) % (32 * 4), 0)
+        self.assertTrue(0.02 < float(move) < 0.1, move)
+
     def test_hemisphere_at_its_limit(self):
         dome = SURFACES / "hemisphere.obj"
         done = self.refuse(4, "2.0", "design", dome, "-o", self.folder / "d.auxshell")

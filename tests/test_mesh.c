@@ -423,6 +423,76 @@ static void tangents_turn_smoothly_round_a_circle(void** state)
     ax_polyline_free(line);
 }
 
+// Largest angle between the normals of neighbouring faces.
+static double sharpest(const ax_mesh* mesh)
+{
+    ax_topology t = ax_topology_make(mesh);
+    double least = 1;
+    for (int h = 0; h < 3 * mesh->face_count; ++h)
+        if (t.twin[h] > h) {
+            double a[3], b[3];
+            ax_face_normal(mesh, h / 3, a);
+            ax_face_normal(mesh, t.twin[h] / 3, b);
+            least = fmin(least, ax_dot3(a, b));
+        }
+    ax_topology_free(&t);
+    return acos(least);
+}
+
+static double total_area(const ax_mesh* mesh)
+{
+    double sum = 0;
+    for (int f = 0; f < mesh->face_count; ++f)
+        sum += ax_face_area(mesh, f);
+    return sum;
+}
+
+static void a_flat_square_keeps_its_corners_and_its_area(void** state)
+{
+    (void)state;
+    ax_mesh square = shape_over_square(3, flat);
+    int vertices = square.vertex_count;
+    ax_refinement done = ax_mesh_refine(&square, 0.2);
+    assert_int_equal(done.rounds, 2);
+    assert_int_equal(square.face_count, 2 * 3 * 3 * 16);
+    assert_true(square.vertex_count > vertices);
+    assert_near(total_area(&square), 4, 1e-12);
+    for (int k = 0; k < square.vertex_count; ++k)
+        assert_near(square.positions[k][2], 0, 0);
+    assert_int_equal(ax_mesh_refine(&square, 0.2).rounds, 0); // fine enough
+    ax_mesh_free(&square);
+}
+
+// The limit is smooth: bends halve with every round; and near: within the square of the mesh's width.
+static void refining_rounds_a_dome_and_moves_it_little(void** state)
+{
+    (void)state;
+    double move[2];
+    for (int k = 0; k < 2; ++k) {
+        ax_mesh dome = shape_cap(k ? 8 : 4, 1);
+        double bend = sharpest(&dome), width = 1.0 / (k ? 8 : 4);
+        move[k] = 0;
+        for (int round = 0; round < 3; ++round) {
+            double facet = sqrt(4 * total_area(&dome) / (sqrt(3) * dome.face_count));
+            ax_refinement done = ax_mesh_refine(&dome, 0.99 * facet);
+            assert_int_equal(done.rounds, 1);
+            move[k] += done.largest_move;
+            double next = sharpest(&dome);
+            assert_at_most(next, 0.7 * bend);
+            bend = next;
+        }
+        for (int v = 0; v < dome.vertex_count; ++v) {
+            assert_at_most(fabs(ax_norm3(dome.positions[v]) - 1), 0.35 * width * width);
+            assert_true(dome.positions[v][2] >= cos(1) - 1e-9); // the rim stays in its plane
+        }
+        ax_mesh_repairs repairs;
+        assert_int_equal(ax_mesh_make_surface(&dome, &repairs, NULL), AX_OK);
+        assert_int_equal(repairs.welded_vertices + repairs.degenerate_faces + repairs.flipped_faces, 0);
+        ax_mesh_free(&dome);
+    }
+    assert_at_most(move[1], 0.35 * move[0]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -438,6 +508,8 @@ int main(void)
         cmocka_unit_test(a_million_faces_are_searchable_in_seconds),
         cmocka_unit_test(polyline_agrees_with_brute_force),
         cmocka_unit_test(rays_through_corners_count_once),
+        cmocka_unit_test(a_flat_square_keeps_its_corners_and_its_area),
+        cmocka_unit_test(refining_rounds_a_dome_and_moves_it_little),
         cmocka_unit_test(tangents_turn_smoothly_round_a_circle),
     };
     return cmocka_run_group_tests_name("mesh", tests, NULL, NULL);

@@ -26,6 +26,7 @@ typedef struct angle_choice {
 typedef struct arguments {
     const char *target, *out;
     int up;
+    bool refine;
     ax_design_options design;
     flatten_choice flatten; // go into `design` when it runs
     angle_choice angle;
@@ -148,6 +149,11 @@ static const command_option options[] = {
      .hi = 59,
      .unit = "degrees",
      .offset = offsetof(arguments, design.mouth_min)},
+    {.name = "--refine",
+     .text = "divide and round the target until its facets are half as wide as the panels (Loop's subdivision): wide "
+             "flat facets carry no load",
+     .kind = OPTION_FLAG,
+     .offset = offsetof(arguments, refine)},
     {.name = "--project",
      .text = "if the surface is not dome-like everywhere, design for the nearest one that is",
      .kind = OPTION_FLAG,
@@ -190,14 +196,18 @@ static void doubt_unit(const ax_design* d)
                ax_unit_name(likely), ax_unit_name(likely));
 }
 
-static void print_steps(const arguments* a, const ax_mesh* mesh, const ax_design* d)
+// `read` has the vertices and faces of the target as it was read.
+static void print_steps(const arguments* a, const int read[2], const ax_refinement* refinement, const ax_design* d)
 {
     const ax_report* r = &d->report;
     const char* unit = ax_unit_name(d->unit);
     char load[96];
-    printf("Read        %s: %d vertices, %d faces; mended: ", a->target, mesh->vertex_count, mesh->face_count);
+    printf("Read        %s: %d vertices, %d faces; mended: ", a->target, read[0], read[1]);
     repairs_print(&d->repairs, stdout);
     doubt_unit(d);
+    if (refinement->rounds)
+        printf("Refined     %d times: %d faces; %.4g %s off its vertices at most\n", refinement->rounds,
+               d->target.face_count, refinement->largest_move, unit);
     if (d->projected)
         printf("Projected   %.1f %% of the area moved, by %.4g %s at most; H is now %.4g or more, <= 0 on %.2g %%\n",
                100 * d->projection.moved_area_share, d->projection.largest_move, unit, d->projection.curvature_min,
@@ -235,10 +245,14 @@ static ax_status run(const void* given, ax_error* error)
     read.up = (ax_up)a->up;
     ax_mesh mesh = {0};
     ax_mesh_repairs repairs;
+    ax_refinement refinement = {0};
     ax_design design = {0};
     ax_status status = output_check(a->out, ".auxshell", error);
     if (status == AX_OK)
         status = ax_mesh_read(a->target, &read, &mesh, &repairs, error);
+    const int counts[2] = {mesh.vertex_count, mesh.face_count};
+    if (status == AX_OK && a->refine)
+        refinement = ax_design_refine_target(&mesh, &wanted);
     if (status == AX_OK)
         status = ax_design_from_target(&mesh, &wanted, progress_reporter(), &design, error);
     progress_end();
@@ -249,7 +263,7 @@ static ax_status run(const void* given, ax_error* error)
         ax_error unsaved;
         ax_status saved = ax_document_save(a->out, &design, &unsaved);
         if (saved == AX_OK) {
-            print_steps(a, &mesh, &design);
+            print_steps(a, counts, &refinement, &design);
             report_print(&design, stdout);
             printf("\nWrote %s: %d triangles, %.2f s in all.\n", a->out, design.linkage.triangle_count,
                    design.report.seconds_total);

@@ -45,6 +45,10 @@ typedef struct ax_design_options {
 } ax_design_options;
 ax_design_options ax_design_options_default(void); // inflation at 100 Pa, 4 kg/m2 should gravity be chosen
 
+// Refines a target until its facets are half as wide as the panels that these options ask for. Flat facets wider than panels hold taut,
+// straight rows of them, which no finite force keeps in balance.
+ax_refinement ax_design_refine_target(ax_mesh* target, const ax_design_options* options);
+
 // Freedom that a support leaves a hinge, without friction.
 typedef enum ax_freedom { AX_HELD_FAST, AX_FREE_ALONG, AX_FREE_ACROSS } ax_freedom;
 typedef struct ax_slide {

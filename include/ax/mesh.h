@@ -55,3 +55,14 @@ ax_status ax_mesh_read_faces(const char* path, const ax_read_options* options, a
 // The same as ax_mesh_read from arrays in memory, for meshes that a program makes: welds, drops, orients, validates in place. Faults
 // are placed by the numbers of the arrays handed in. On failure the mesh is freed and empty.
 ax_status ax_mesh_make_surface(ax_mesh* mesh, ax_mesh_repairs* repairs, ax_error* error);
+
+// What refining has done.
+typedef struct ax_refinement {
+    int rounds;          // each divides every face into four; 0: fine enough already
+    double largest_move; // largest distance of a vertex as it was from the surface as it is, in the mesh's unit
+} ax_refinement;
+
+// Divides and rounds a surface (as ax_mesh_read returns it) by Loop's subdivision until the side of its mean facet is `facet` or less, or the
+// mesh would have more than two million faces. The rim becomes a smooth curve but for corners that turn by more than 50 degrees, which stay.
+// Vertices keep their numbers; new ones follow. The surface shrinks a little where it bulges.
+ax_refinement ax_mesh_refine(ax_mesh* mesh, double facet);

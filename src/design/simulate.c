@@ -79,7 +79,7 @@ static const char* what_to_try(const ax_design* design)
         area += ax_face_area(&design->target, f);
     double facet = design->target.face_count ? sqrt(4 * area / (sqrt(3) * design->target.face_count)) : 0;
     return facet > design->report.edge_mean ? "The target's facets are wider than the panels, and flat facets carry no "
-                                              "load: refine and smooth the mesh."
+                                              "load: refine the mesh (--refine)."
                                             : "Try the other load, more supports, or another number of triangles.";
 }
 

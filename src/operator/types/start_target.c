@@ -4,7 +4,7 @@ typedef struct arguments {
     const char* file;
     int triangles, unit, up, border;
     double edge, scale_lo, scale_hi, mouth_min, angle;
-    bool project;
+    bool project, refine;
 } arguments;
 
 static const char* const borders[] = {
@@ -47,6 +47,10 @@ static const ax_field fields[] = {
               .doc = "Smallest mouth angle allowed at a flat hinge: room for joints and the saw."),
     AX_NUMBER(arguments, angle, "Lattice angle", "deg", -360, 360, .fallback = "searched for the best rim",
               .doc = "Direction of the lattice rows against the x axis of the flattened surface."),
+    AX_FLAG(arguments, refine, "Refine",
+            .doc =
+                "Divide and round the surface until its facets are half as wide as the panels: wide flat facets carry "
+                "no load."),
     AX_FLAG(arguments, project, "Project",
             .doc = "If the surface is not dome-like everywhere, design for the nearest one that is."),
 };
@@ -71,6 +75,8 @@ static ax_status design_for(const arguments* a, const char* path, const ax_progr
     ax_mesh mesh;
     ax_status status = ax_mesh_read(path, &read, &mesh, NULL, error);
     if (status == AX_OK) {
+        if (a->refine)
+            ax_design_refine_target(&mesh, &options);
         status = ax_design_from_target(&mesh, &options, progress, design, error);
         ax_mesh_free(&mesh);
     }
