@@ -172,6 +172,30 @@ export const scenarios = {
         });
     },
 
+    async "a coarse mesh in millimetres that lies on its side is stood up, taken in its unit and refined"(browser) {
+        await withStudio(browser, [circle], async (hand) => {
+            const side = [-2, -1, 0, 1, 2];
+            let mesh = side.flatMap((x) => side.map((y) => `v ${1000 * x} ${1200 - 150 * (x * x + y * y)} ${-1000 * y}\n`)).join("");
+            for (let row = 0; row < 4; ++row) for (let a = 5 * row + 1; a < 5 * row + 5; ++a) mesh += `f ${a} ${a + 5} ${a + 6} ${a + 1}\n`;
+            await hand.drop("coarse.obj", Buffer.from(mesh));
+            const dialog = hand.page.getByRole("dialog");
+            await dialog.getByText("no height field").waitFor({ timeout: 60000 });
+            await dialog.getByLabel("Up axis").selectOption("y");
+            await dialog.getByText("and by gravity").waitFor({ timeout: 60000 });
+            assert.equal(await dialog.getByLabel("Unit").inputValue(), "mm", "four kilometres are four metres");
+            assert.ok(await dialog.getByRole("checkbox").isChecked(), "its facets are wider than its panels");
+            await dialog.getByLabel("Panels", { exact: true }).fill("200");
+            await hand.page.keyboard.press("Enter");
+            await dialog.getByRole("button", { name: "Design it" }).click();
+            await hand.page.waitForFunction(() => auxshell.session.documentState.value?.steps[0].operator.op === "start_target", null, { timeout: 120000 });
+            await hand.rest();
+            const step = await hand.page.evaluate(() => auxshell.session.documentState.value.steps[0].operator);
+            assert.deepEqual([step.unit, step.up, step.refine], ["mm", "y", true]);
+            const places = await hand.places();
+            assert.ok(places.length > 0);
+        });
+    },
+
     async "what is being made is watched, and cancelled: the old one is there again"(browser) {
         await withStudio(browser, [circle], async (hand) => {
             const { page } = hand;

@@ -4,7 +4,7 @@ import type { Problem, Screen } from "../protocol/types";
 import { CommandError, upload } from "../protocol/link";
 import { ask, command, problem, progress } from "../state/session";
 import { dialog, page } from "../state/view";
-import { Button, Dialog, NumberRow, Row, Choice, severityClass, severityIcon } from "./controls";
+import { Button, CheckBox, Dialog, NumberRow, Row, Choice, severityClass, severityIcon } from "./controls";
 import { type LengthUnit, count, number, plural } from "./format";
 import { Icon } from "./icons";
 
@@ -17,6 +17,7 @@ interface Candidate {
     unit: LengthUnit;
     unitChosen: boolean; // by hand: else the likely one is taken
     up: "file" | "y" | "z";
+    refine: boolean | null; // null: as the facets want it
 }
 export const candidate = signal<Candidate | null>(null);
 
@@ -33,7 +34,7 @@ export async function takeFile(file: File): Promise<void> {
             const token = await upload(file, file.name);
             if (await command("new", { recipe: [{ op: "start_curve", file: file.name }], files: { [file.name]: token }, name: file.name.replace(/\.\w+$/, "") })) page.value = "work";
         } else if (meshEndings.test(file.name)) {
-            candidate.value = { name: file.name, token: await upload(file, file.name), screen: null, error: null, triangles: 600, unit: "m", unitChosen: false, up: "file" };
+            candidate.value = { name: file.name, token: await upload(file, file.name), screen: null, error: null, triangles: 600, unit: "m", unitChosen: false, up: "file", refine: null };
             dialog.value = "surface";
             await screen();
         } else refuse(`${file.name} is no mesh, outline, design or recipe. The studio reads OBJ, STL, PLY, GLB, SVG, DXF, .auxshell and recipe JSON.`);
@@ -56,6 +57,11 @@ async function screen(): Promise<void> {
     }
 }
 
+/** Flat facets wider than the panels carry no load; open, a panel and its share of the holes take sqrt(3) times its edge squared. */
+function isCoarse(c: Candidate): boolean {
+    return c.screen !== null && Math.sqrt((4 * c.screen.area) / (Math.sqrt(3) * c.screen.faces)) > Math.sqrt(c.screen.area / (Math.sqrt(3) * c.triangles));
+}
+
 const close = () => {
     dialog.value = null;
     candidate.value = null;
@@ -65,10 +71,11 @@ export function SurfaceDialog() {
     const c = candidate.value;
     if (!c) return null;
     const s = c.screen;
+    const refine = c.refine ?? isCoarse(c);
     const severity = s ? { deployable: "pass", deployable_projected: "warning", not_deployable: "failure" }[s.verdict] : "unknown";
     const design = async (project: boolean) => {
         const { name, token, triangles, unit, up } = c;
-        const recipe: Record<string, unknown>[] = [{ op: "start_target", file: name, triangles, unit, ...(up === "file" ? {} : { up }), ...(project ? { project: true } : {}) }];
+        const recipe: Record<string, unknown>[] = [{ op: "start_target", file: name, triangles, unit, ...(up === "file" ? {} : { up }), ...(refine ? { refine } : {}), ...(project ? { project: true } : {}) }];
         const load = s?.by_inflation ? "inflation" : s?.by_gravity ? "gravity" : null;
         if (load) recipe.push({ op: load });
         if (await command("new", { recipe, files: { [name]: token }, name: name.replace(/\.\w+$/, "") })) {
@@ -117,6 +124,7 @@ export function SurfaceDialog() {
                             candidate.value = { ...c, up };
                             void screen();
                         }} />}</Row>
+                        <Row label="Refine" title="Divide and round the surface until its facets are half as wide as the panels">{(id) => <CheckBox id={id} value={refine} title={isCoarse(c) ? "Facets are wider than panels" : "Round the facets"} onChange={(refine) => (candidate.value = { ...c, refine })} />}</Row>
                     </div>
                     <p class="small faint">{count(c.triangles)} panels take {c.triangles > 5000 ? "some seconds" : "about a second"}.</p>
                 </div>
