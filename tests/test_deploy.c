@@ -235,7 +235,7 @@ static void hessian_agrees_with_differences_where_hinges_slide(void** state)
 static ax_deployment deploy(const ax_deploy_model* m, double (*x)[3], double* force)
 {
     ax_deployment result;
-    assert_true(ax_deploy(m, x, force, NULL, &result));
+    assert_true(ax_deploy(m, NULL, x, force, NULL, &result));
     return result;
 }
 
@@ -571,7 +571,7 @@ static void it_can_be_cancelled(void** state)
     double(*x)[3] = ax_alloc((size_t)m.hinges, sizeof *x), *force = AX_NEW0(double, m.edge_count);
     ax_progress progress = {stop_at_once, NULL};
     ax_deployment result;
-    assert_false(ax_deploy(&m, x, force, &progress, &result));
+    assert_false(ax_deploy(&m, NULL, x, force, &progress, &result));
     ax_free(x);
     ax_free(force);
     ax_deploy_model_free(&m);

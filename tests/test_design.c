@@ -201,7 +201,7 @@ static void random_starts_reach_one_state(void** state)
         double(*x)[3] = ax_alloc((size_t)m.hinges, sizeof *x), (*y)[3] = ax_alloc((size_t)m.hinges, sizeof *y);
         double* force = AX_NEW0(double, m.edge_count);
         ax_deployment first;
-        assert_true(ax_deploy(&m, x, force, NULL, &first));
+        assert_true(ax_deploy(&m, NULL, x, force, NULL, &first));
         assert_true(first.exact);
         ax_newton* newton = ax_newton_make(&m, NULL);
         for (uint64_t seed = 1; seed <= 3; ++seed) {

@@ -105,6 +105,34 @@ class Recipes(CommandCase):
         (self.folder / "bad.json").write_text('{"format": "auxshell-recipe",}')
         self.refuse(3, "bad.json, line 1, column", "run", self.folder / "bad.json", *out)
 
+    def test_sheets_that_do_not_open_at_once_are_opened_otherwise_and_the_report_says_how(self):
+        ell = [[-1, -1], [1, -1], [1, 0], [0, 0], [0, 1], [-1, 1]]
+        # the rectangle's corners fold over on the oval; the re-entrant corner of the L holds projective steps up
+        cases = [({"op": "start_rectangle", "width": 3, "height": 1.5, "triangles": 1000, "scale": 1.4},
+                  {"op": "rim_ellipse", "a": [2, 0, 0], "b": [0, 1.1, 0]}, "gravity"),
+                 ({"op": "start_outline", "points": ell, "triangles": 400, "scale": 1.4},
+                  {"op": "rim_polyline", "points": [[1.1 * x, 1.1 * y, 0] for x, y in ell]}, "inflation")]
+        for start, rim, load in cases:
+            with self.subTest(start=start["op"]):
+                out = self.folder / "x.auxshell"
+                words = self.succeed("run", self.write([start, rim, {"op": load}, {"op": "finish"}]), "-o", out)
+                self.assertIn("Exact after", words)
+                report = json.loads(self.succeed("info", out, "--json"))["report"]
+                self.assertLess(report["force_residual"], 1e-10)
+                self.assertLess(report["simulated_edge_error_max"], 1e-10)
+                self.assertTrue(report["stable"])
+                flat, stages = report["from_flat"], report["rim_stages"]
+                self.assertIn(stages, (1, 4) if flat else (0,))
+                told = "opened from flat" if flat else "started from the designed state: does not show that it opens by itself"
+                self.assertRegex(words, rf"Simulated .* L rms from the design, {told}")
+
+    def test_a_sheet_without_room_to_bulge_is_refused_in_words(self):
+        taut = [{"op": "start_circle", "radius": 1, "triangles": 200, "scale": 1.5}, {"op": "rim_circle", "radius": 1.55},
+                {"op": "gravity"}, {"op": "finish"}]
+        done = run("run", self.write(taut), "-o", self.folder / "x.auxshell")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("pulled taut", done.stderr)
+
     def test_what_cannot_exist_leaves_what_came_before(self):
         out = self.folder / "x.auxshell"
         too_much = {"op": "paint_curvature", "points": [[0, 0]], "radius": 1, "curvature": 20}

@@ -218,8 +218,8 @@ static void print_steps(const arguments* a, const int read[2], const ax_refineme
     printf("Solved      flat and deployed congruent to %.1e; %.2f s\n", r->congruence_max, r->seconds_joint);
     load_words(&d->load, load, sizeof load);
     if (d->simulated)
-        printf("Deployed    from flat by %s: %.4f L rms, %.3f L at most from the design; %.2f s\n", load,
-               r->simulated_rms_over_L, r->simulated_max_over_L, r->seconds_deploy);
+        printf("Deployed    by %s, %s: %.4f L rms, %.3f L at most from the design; %.2f s\n", load,
+               ax_report_opening(r), r->simulated_rms_over_L, r->simulated_max_over_L, r->seconds_deploy);
     else
         printf("Deployed    not: %s did not lead to an exact state; %.2f s\n", load, r->seconds_deploy);
 }

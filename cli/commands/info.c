@@ -45,7 +45,8 @@ static void print_design(const char* path, const ax_design* d)
         printf("  Projected       %.1f %% of the area moved, by %.4g %s at most; H is now %.4g or more\n",
                100 * d->projection.moved_area_share, d->projection.largest_move, ax_unit_name(d->unit),
                d->projection.curvature_min);
-    printf("  Deployed by     %s, held at %d hinges\n", load, count_supports(d));
+    const char* how = ax_report_opening(&d->report);
+    printf("  Deployed by     %s, held at %d hinges%s%s\n", load, count_supports(d), *how ? "; " : "", how);
     report_print(d, stdout);
 }
 

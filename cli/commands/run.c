@@ -69,6 +69,18 @@ static void print_state(ax_form* form)
     ax_form_report_free(&r);
 }
 
+// How the design was opened, if the recipe finished one.
+static ax_status print_opening(ax_session* session, ax_error* error)
+{
+    const ax_design* design;
+    ax_status status = ax_session_design(session, progress_reporter(), &design, error);
+    progress_end();
+    if (status == AX_OK && design && design->simulated)
+        printf("\nSimulated %.4f L rms from the design, %s.\n", design->report.simulated_rms_over_L,
+               ax_report_opening(&design->report));
+    return status;
+}
+
 static void print_step(void* context, int k, const char* words)
 {
     (void)context;
@@ -142,6 +154,9 @@ static ax_status play(const arguments* a, ax_session** session, ax_error* error)
     if (status != AX_OK)
         return status;
     print_state(ax_session_form(*session));
+    status = print_opening(*session, error);
+    if (status != AX_OK)
+        return status;
     printf("\nWrote %s: %d triangles.\n", a->out, ax_form_look(ax_session_form(*session)).linkage->triangle_count);
     const char* why;
     if (ax_session_failed(*session, &why) < 0)

@@ -131,9 +131,9 @@ static ax_status run(const void* given, ax_error* error)
     if (status == AX_OK) {
         char words[96];
         load_words(&design.load, words, sizeof words);
-        printf("Deployed %d triangles from flat by %s: %.4f L rms, %.3f L at most from the design; %.2f s\n",
-               design.linkage.triangle_count, words, design.report.simulated_rms_over_L,
-               design.report.simulated_max_over_L, design.report.seconds_deploy);
+        printf("Deployed %d triangles by %s, %s: %.4f L rms, %.3f L at most from the design; %.2f s\n",
+               design.linkage.triangle_count, words, ax_report_opening(&design.report),
+               design.report.simulated_rms_over_L, design.report.simulated_max_over_L, design.report.seconds_deploy);
         report_print(&design, stdout);
     }
     ax_design_free(&design);

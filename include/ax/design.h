@@ -78,9 +78,12 @@ typedef struct ax_report {
     bool simulated;                                    // an exact simulated state exists
     double simulated_rms_over_L, simulated_max_over_L; // simulated against deployed
     int simulated_max_hinge;
-    double simulated_edge_error_max;       // |edge / flat edge - 1|
-    double force_residual;                 // |force at free hinges| / |load|, from positions and edge forces alone
-    bool stable;                           // the reduced Hessian is positive definite
+    double simulated_edge_error_max; // |edge / flat edge - 1|
+    double force_residual;           // |force at free hinges| / |load|, from positions and edge forces alone
+    bool stable;                     // the reduced Hessian is positive definite
+    bool from_flat;                  // the flat sheet was opened to it; else it was found from the designed state
+    bool inflated_first;             // by inflation, whatever the load
+    int rim_stages;                  // in which the supports moved to their places: 1, at once; 0 when not from flat
     double edge_force_min, edge_force_max; // N, tension positive
     double compressed_share;               // share of edges pushed
     double hinge_force_max;                // N, the largest force one panel passes on at a hinge
@@ -123,9 +126,13 @@ ax_status ax_design_from_target(const ax_mesh* target, const ax_design_options* 
                                 ax_design* out, ax_error* error);
 
 // Deploys the flat state again under `load` with the present supports. Reads the flat state, the supports' deployed places
-// and the load, nothing of the deployed interior. Replaces simulated, forces, edge_forces and the report's deployment part; on
+// and the load, nothing of the deployed interior unless no equilibrium is reached from flat: then an equilibrium near the designed state is
+// looked for, and the report's from_flat is false. Replaces simulated, forces, edge_forces and the report's deployment part; on
 // failure these are cleared (a state that is not exact is not kept).
 ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_progress* progress, ax_error* error);
+
+// How the simulated state was reached, in words: "opened from flat in one go". Empty without one.
+const char* ax_report_opening(const ax_report* report);
 
 // Makes these hinges the supports (ax_select finds them by words), and drops the simulated state, which belonged to others.
 void ax_design_set_supports(ax_design* design, int count, const int* hinges);

@@ -41,7 +41,10 @@ static const ax_figure figures[] = {
     {COUNT(overlap_pairs, 1), FLAT, .label = "Overlapping pairs", .unit = "", AT_MOST(0)},
     {COUNT(overlap_first, 2), FLAT, .label = "First overlapping pair", .unit = ""},
 
-    {FLAG(simulated), DEPLOYMENT, .label = "Deployed from flat by simulation", .unit = "", AT_LEAST(1)},
+    {FLAG(simulated), DEPLOYMENT, .label = "Deployed by simulation", .unit = "", AT_LEAST(1)},
+    {FLAG(from_flat), DEPLOYMENT, .label = "Opened from flat", .unit = "", AT_LEAST(1)},
+    {FLAG(inflated_first), DEPLOYMENT, .label = "Inflated before it was loaded", .unit = ""},
+    {COUNT(rim_stages, 1), DEPLOYMENT, .label = "Stages in which the rim moved", .unit = ""},
     {NUMBER(simulated_rms_over_L, 1), DEPLOYMENT, .label = "Simulated to designed, rms", .unit = "L", AT_MOST(0.1)},
     {NUMBER(simulated_max_over_L, 1), DEPLOYMENT, .label = "Simulated to designed, largest", .unit = "L", AT_MOST(0.3)},
     {COUNT(simulated_max_hinge, 1), DEPLOYMENT, .label = "Hinge farthest from the design", .unit = ""},
@@ -69,6 +72,15 @@ const ax_figure* ax_report_figures(int* count)
 {
     *count = (int)(sizeof figures / sizeof *figures);
     return figures;
+}
+
+const char* ax_report_opening(const ax_report* report)
+{
+    return !report->simulated       ? ""
+           : !report->from_flat     ? "started from the designed state: does not show that it opens by itself"
+           : report->rim_stages > 1 ? "opened from flat by moving the rim in stages"
+           : report->inflated_first ? "opened from flat by inflation, then loaded"
+                                    : "opened from flat in one go";
 }
 
 const char* ax_figure_group_name(ax_figure_group group)

@@ -13,7 +13,9 @@
 #include <string.h>
 
 static const double relaxation = 1.8, start_penalty = 10, most_penalty = 3000, imbalance = 2;
-enum { CHECK = 20, BALANCE = 2 * CHECK };
+enum { CHECK = 20, BALANCE = 2 * CHECK, PATIENCE = 500 };
+static const double standstill =
+    0.02; // residuals above it that have not fallen by a tenth in PATIENCE steps will not fall
 
 struct ax_admm {
     const ax_deploy_model* model;
@@ -227,6 +229,7 @@ static void balance(ax_admm* a, ax_residuals residuals)
 bool ax_admm_run(ax_admm* a, double level, int iterations, const ax_progress* progress, ax_residuals* residuals)
 {
     *residuals = measure(a);
+    double least = INFINITY, before = INFINITY;
     if (!a->model->inflated)
         ax_deploy_energy(a->model, (const double(*)[3])a->x, a->gradient);
     for (int k = 1; k <= iterations; ++k) {
@@ -240,6 +243,12 @@ bool ax_admm_run(ax_admm* a, double level, int iterations, const ax_progress* pr
             return false;
         if (worst <= level)
             break;
+        least = fmin(least, worst);
+        if (k % PATIENCE == 0) {
+            if (least > standstill && least > 0.9 * before)
+                break;
+            before = fmin(before, least);
+        }
         if (k % BALANCE == 0)
             balance(a, *residuals);
     }

@@ -22,7 +22,7 @@ typedef struct ax_residuals {
 // Hinges on curves stay where they start until they are released.
 void ax_admm_release(ax_admm* admm);
 
-// Iterates until both residuals are at most `level`, at most `iterations` times. False if cancelled.
+// Iterates until both residuals are at most `level`, at most `iterations` times, or until they stand still far above. False if cancelled.
 bool ax_admm_run(ax_admm* admm, double level, int iterations, const ax_progress* progress, ax_residuals* residuals);
 
 const double (*ax_admm_places(const ax_admm* admm))[3];

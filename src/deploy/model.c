@@ -536,13 +536,18 @@ static void align(const ax_deploy_model* m, double rotation[3][3])
     memcpy(rotation, r, sizeof r);
 }
 
-void ax_deploy_start(const ax_deploy_model* m, double noise, double (*x)[3])
+void ax_deploy_lay(const ax_deploy_model* m, double (*x)[3])
 {
     double r[3][3];
     align(m, r);
     for (int h = 0; h < m->hinges; ++h)
         for (int c = 0; c < 3; ++c)
             x[h][c] = r[c][0] * m->rest[h][0] + r[c][1] * m->rest[h][1];
+}
+
+void ax_deploy_start(const ax_deploy_model* m, double noise, double (*x)[3])
+{
+    ax_deploy_lay(m, x);
 
     // harmonic extension of the displacement of the supports over the graph of edges
     ax_entries entries = {0};

@@ -101,6 +101,9 @@ void ax_deploy_hessian_free(ax_deploy_hessian* hessian);
 void ax_deploy_hessian_fill(ax_deploy_hessian* hessian, const ax_deploy_model* model, const double (*x)[3],
                             const ax_deploy_frame* frame, const double* force, double shift, double mu);
 
+// The flat state in space, turned as the supports are.
+void ax_deploy_lay(const ax_deploy_model* model, double (*x)[3]);
+
 // Start from the flat state alone: aligned with the supports, their displacement spread harmonically, and a small
 // reproducible noise that leaves the plane.
 void ax_deploy_start(const ax_deploy_model* model, double noise, double (*x)[3]);

@@ -61,6 +61,8 @@ static void measure_simulated(const ax_design* design, ax_report* r)
     r->load_total = r->reaction_total = NAN;
     r->simulated_max_hinge = -1;
     if (!r->simulated) {
+        r->from_flat = r->inflated_first = false;
+        r->rim_stages = 0;
         r->energy = NAN;
         return;
     }

@@ -72,15 +72,13 @@ static void keep_solution(ax_design* design, const ax_deploy_model* model, const
 
 // Flat facets wider than a panel hold straight, taut rows of panels, which no finite force keeps in balance under a load across
 // them: the most common reason why a sound design does not settle.
-static const char* what_to_try(const ax_design* design)
+static bool has_wide_facets(const ax_design* design)
 {
     double area = 0;
     for (int f = 0; f < design->target.face_count; ++f)
         area += ax_face_area(&design->target, f);
     double facet = design->target.face_count ? sqrt(4 * area / (sqrt(3) * design->target.face_count)) : 0;
-    return facet > design->report.edge_mean ? "The target's facets are wider than the panels, and flat facets carry no "
-                                              "load: refine the mesh (--refine)."
-                                            : "Try the other load, more supports, or another number of triangles.";
+    return facet > design->report.edge_mean;
 }
 
 ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_progress* progress, ax_error* error)
@@ -116,8 +114,15 @@ ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const 
                              holds, gravity ? load->direction : NULL, &unit_load);
     double newton = unit_load * metre * metre * (gravity ? load->density * standard_gravity : load->pressure);
     double(*x)[3] = ax_alloc((size_t)model.hinges, sizeof *x), *force = AX_NEW0(double, model.edge_count);
+    double(*designed)[3] = ax_alloc((size_t)model.hinges, sizeof *designed);
+    for (int h = 0; h < model.hinges; ++h)
+        for (int c = 0; c < 3; ++c)
+            designed[h][c] = (design->deployed[h][c] - model.centre[c]) / model.unit;
+    bool reached = ax_deploy_edge_error(&model, (const double(*)[3])designed) <
+                   1e-6; // its supports are no further than it reaches
     ax_deployment result;
-    bool finished = ax_deploy(&model, x, force, progress, &result);
+    bool finished = ax_deploy(&model, (const double(*)[3])designed, x, force, progress, &result);
+    ax_free(designed);
     ax_status status = AX_OK;
     if (!finished)
         status = ax_fail(error, AX_CANCELLED, "Cancelled.");
@@ -136,7 +141,14 @@ ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const 
             ax_fail(error, AX_FAILED,
                     "Rim hinges would pass each other on the curve that they slide on, which panels cannot do. Fix "
                     "some of them, or choose a curve with gentler bends.");
-    else if (result.force_over_tension > 100 && result.residuals.edge > 1e-3)
+    else if (result.taut && !has_wide_facets(design))
+        status = ax_fail(
+            error, AX_CANNOT_REALISE,
+            "The sheet is pulled taut between its supports: edge forces are beyond %.0f times what the load asks of a "
+            "sheet that bulges, and grow without bound. Bring the supports closer by a few per cent, or raise the "
+            "scale factors.",
+            result.force_over_tension);
+    else if (result.force_over_tension > 100 && result.residuals.edge > 1e-3 && !reached)
         status = ax_fail(
             error, AX_CANNOT_REALISE,
             "The supports are too far apart: even fully open the linkage does not reach them, and edge forces grow "
@@ -148,10 +160,17 @@ ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const 
                     "after %d projective and %d exact steps%s. Nothing simulated is kept. %s",
                     result.residuals.edge, result.residuals.force, result.projective_steps, result.newton_steps,
                     result.stable || result.residuals.force > 1e-10 ? "" : ", and the state found is not stable",
-                    what_to_try(design));
+                    has_wide_facets(design) ? "The target's facets are wider than the panels, and flat facets carry no "
+                                              "load: refine the mesh (--refine)."
+                                            : "Try the other load, more supports, or another number of triangles.");
     ax_design_measure(design);
     design->report.energy = status == AX_OK ? result.energy * newton * model.unit * metre : NAN;
     design->report.stable = status == AX_OK && result.stable;
+    design->report.from_flat = status == AX_OK && result.opening != AX_OPENED_DESIGNED;
+    design->report.inflated_first = status == AX_OK && result.opening == AX_OPENED_INFLATED;
+    design->report.rim_stages = !design->report.from_flat               ? 0
+                                : result.opening == AX_OPENED_IN_STAGES ? AX_OPENING_STAGES
+                                                                        : 1;
     design->report.projective_steps = result.projective_steps;
     design->report.newton_steps = result.newton_steps;
     design->report.seconds_deploy = ax_seconds() - start;

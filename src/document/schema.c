@@ -41,6 +41,10 @@ static const char* const steps[] = {
     // Places in the tree of steps that have a name, as a moment has a number, with their figures as text.
     ("CREATE TABLE variant(name TEXT PRIMARY KEY NOT NULL, tip INTEGER NOT NULL, state INTEGER NOT NULL, steps INTEGER"
      " NOT NULL, at INTEGER NOT NULL, time REAL NOT NULL, figures TEXT NOT NULL);"),
+    // How a simulated state was reached: until then always from flat, mostly at once.
+    ("INSERT INTO property SELECT design, 'report.from_flat', value FROM property WHERE name = 'report.simulated';"
+     "INSERT INTO property SELECT design, 'report.rim_stages', value FROM property WHERE name = 'report.simulated';"
+     "INSERT INTO property SELECT design, 'report.inflated_first', 0 FROM property WHERE name = 'report.simulated';"),
 };
 
 const ax_schema ax_document_schema = {.version = sizeof steps / sizeof *steps, .steps = steps};
