@@ -26,7 +26,7 @@ export class ShellScene {
     constructor(linkage: Linkage, look: Look, private readonly planar: boolean, frugal: boolean) {
         this.panels = new PanelMesh(linkage, look);
         this.ground = new GroundShadow(planar ? keyFrom.plane : keyFrom.space, frugal ? 256 : 2048);
-        this.key.castShadow = true;
+        this.key.castShadow = !planar; // panels in one plane cast none on each other, and what a shadow map makes of that is stripes
         this.key.shadow.autoUpdate = false;
         this.key.shadow.radius = 3;
         this.key.shadow.bias = -0.0006;
@@ -74,7 +74,8 @@ export class ShellScene {
         const camera = this.key.shadow.camera;
         Object.assign(camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.5 * radius, far: 6 * radius });
         camera.updateProjectionMatrix();
-        this.key.shadow.normalBias = 0.03 * this.panels.edge;
+        // where panels are small, a texel of the shadow map is not
+        this.key.shadow.normalBias = Math.max(0.03 * this.panels.edge, (1.5 * 2 * reach) / this.key.shadow.mapSize.x);
         // the grid stays where it is while the shell moves a little: it is what the eye measures by
         if (Math.abs(radius - this.gridRadius) > 0.15 * radius || this.gridRadius === 0) {
             this.gridRadius = radius;

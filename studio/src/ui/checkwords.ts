@@ -1,6 +1,6 @@
 // A check in the few words that fit its cell. What the page has no shorter words for stays as the server put it.
 import type { Check } from "../protocol/types";
-import { type LengthUnit, length, number } from "./format";
+import { type LengthUnit, length, number, scientific } from "./format";
 
 export interface CheckWords {
     question: string;
@@ -13,7 +13,7 @@ const capital = (s: string) => s.charAt(0).toUpperCase() + s.slice(1);
 /** `edge` is the panel edge L in the document's unit. */
 export function checkWords(c: Check, unit: LengthUnit, edge: number): CheckWords {
     const v = c.value;
-    const limit = capital(c.limit.replace(/ on \d+ panels off the rim/, "").replace(/ deg\b/, "°").replace(/^([\d.]+) L\b/, (_, n: string) => `Limit ${length(Number(n) * edge, unit)}`).replace(/^([\d.e-]+) (mm|cm|m)$/, (_, n: string, u: string) => `Limit ${length(Number(n), u as LengthUnit)}`));
+    const limit = capital(c.limit.replace("mean curvature above", "mean curvature >").replace(/ on \d+ (of \d+ )?panels.*$/, "").replace(/ deg\b/, "°").replace(/^([\d.]+) L\b/, (_, n: string) => `Limit ${length(Number(n) * edge, unit)}`).replace(/^([\d.e-]+) (mm|cm|m)$/, (_, n: string, u: string) => `Limit ${length(Number(n), u as LengthUnit)}`));
     const words = (question: string, answer: string | null): CheckWords => ({ question, answer: answer ?? capital(c.answer), limit });
     switch (c.key) {
         case "scale": return words("Scale factor λ", null);
@@ -22,7 +22,7 @@ export function checkWords(c: Check, unit: LengthUnit, edge: number): CheckWords
         case "curvature": return words("Bulges outward", v === 0 ? "Everywhere" : v === null ? null : `Not on ${number(100 * v, v < 0.1 ? 1 : 0)} %`);
         case "rim": return words("Rim and constraints", v === null ? null : v < 1e-9 ? "Exactly met" : `${length(v, unit)} off`);
         case "match": return words("Simulated to design", v === null ? null : `${length(v * edge, unit)} rms`);
-        case "force": return words("Forces in balance", null);
+        case "force": return c.answer.startsWith("exact") && v !== null ? { question: "Forces in balance", answer: "Exact", limit: `Residual ${scientific(v)}` } : words("Forces in balance", c.severity === "unknown" ? "Not exact yet" : null);
         default: return words(c.title, null);
     }
 }

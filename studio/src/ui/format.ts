@@ -46,7 +46,7 @@ export function length(value: number, unit: LengthUnit): string {
     if (!Number.isFinite(value)) return "–";
     const m = value * metres[unit];
     const size = Math.abs(m);
-    if (size >= 0.1 || size === 0) return `${number(m, size >= 100 ? 0 : size >= 10 ? 1 : 2)} m`;
+    if (size >= 0.1) return `${number(m, size >= 100 ? 0 : size >= 10 ? 1 : 2)} m`;
     const mm = 1000 * m;
     return size < 5e-7 ? "0 mm" : `${number(mm, Math.abs(mm) >= 10 ? 0 : Math.abs(mm) >= 0.1 ? 1 : 3)} mm`;
 }

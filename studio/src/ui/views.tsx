@@ -112,13 +112,13 @@ function ViewFrame({ id, rect, many }: { id: ViewId; rect: Rect; many: boolean }
     };
     return (
         <div class="view-frame" style={box(rect)}>
-            <div class="view-title" onDblClick={toggle}><ViewTitle id={id} /></div>
+            <div class="view-title" onDblClick={toggle}><ViewTitle id={id} short={rect.width < (mode.value === "analyse" ? 760 : id === "deployed" ? 560 : 260)} /></div>
             <div class="view-tools">
                 {id === "deployed" && mode.value === "analyse" && <AnalyseFields />}
                 {id === "deployed" && mode.value !== "analyse" && rect.width > 520 && view && <Presets view={view} />}
                 {mode.value !== "analyse" && <Tool icon={many ? "expand" : "shrink"} name={many ? `Only ${titles[id].toLowerCase()}` : "Both views"} small onClick={toggle} />}
             </div>
-            {(id === "flat" || (id === "deployed" && (!many || narrow.value))) && <Legend />}
+            {(id === "flat" || (id === "deployed" && (!many || narrow.value))) && <Legend compact={rect.height < 420 || rect.width < 340} />}
             {id === "deployed" && mode.value === "analyse" && <ForceKey />}
             {view && <ScaleBar view={view} hidden={id === "deployed"} />}
             {id === "deployed" && view && <Axes view={view} />}
@@ -126,7 +126,7 @@ function ViewFrame({ id, rect, many }: { id: ViewId; rect: Rect; many: boolean }
     );
 }
 
-function ViewTitle({ id }: { id: ViewId }) {
+function ViewTitle({ id, short }: { id: ViewId; short: boolean }) {
     revision.value;
     topology.value;
     const shell = currentShell();
@@ -138,7 +138,7 @@ function ViewTitle({ id }: { id: ViewId }) {
     return (
         <>
             <b>{name}</b>
-            <span>{flat || mode.value === "analyse" ? `${count(shell.linkage.panels)} panels, ` : ""}{extent(b.min, b.max, flat ? 2 : 3, unit)}</span>
+            {!short && <span>{flat || mode.value === "analyse" ? `${count(shell.linkage.panels)} panels, ` : ""}{extent(b.min, b.max, flat ? 2 : 3, unit)}</span>}
         </>
     );
 }
