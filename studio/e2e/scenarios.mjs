@@ -442,7 +442,7 @@ export const scenarios = {
                     if (c.triangle >= 0) assert.equal(panels[0], c.triangle);
                     if (c.other >= 0) assert.deepEqual(panels, [c.triangle, c.other], "both of a pair");
                 }
-                await page.getByRole("button", { name: "All findings" }).click();
+                await page.getByRole("button", { name: "Can it deploy?" }).click();
                 const findings = page.getByRole("region", { name: "Findings" });
                 for (const [k, f] of report.findings.filter((x) => x.triangle >= 0 || x.hinge >= 0).entries()) await leadsTo(findings.getByRole("button").nth(k), f.kind);
                 if (name === "a site that is near") assert.ok(report.findings.some((f) => f.kind === "clearance"));

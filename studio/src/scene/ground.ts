@@ -97,7 +97,9 @@ export class GroundShadow {
         renderer.clear();
         // sharp where the shell touches, softer the higher it stands: no lace is left under the crown
         const pixels = (this.size / (2 * reach)) * panels.edge;
-        const width = (k: number) => pixels * (0.1 + (0.55 * ((k + 0.5) / bands) * height) / panels.edge);
+        // what is finer than the texture is made even: stripes otherwise
+        const least = 0.1 + 0.9 * Math.max(0, Math.min(1, (24 - pixels) / 12));
+        const width = (k: number) => pixels * (least + (0.55 * ((k + 0.5) / bands) * height) / panels.edge);
         for (let k = bands - 1; k >= 0; k--) {
             u.band.value.set(k === 0 ? -Infinity : (k / bands) * height, k === bands - 1 ? Infinity : ((k + 1) / bands) * height);
             renderer.setRenderTarget(this.targets[0]);

@@ -31,7 +31,7 @@ export function Checks() {
     const words = failed ? `${plural(failed, "check")} failed` : warned ? `${plural(warned, "check")} ${warned === 1 ? "needs" : "need"} a look` : r.verdict.severity === "unknown" ? "Still measuring" : "All checks passed";
     return (
         <section class={`checks${busy ? " stale" : ""}`} aria-label="Can it deploy?">
-            <button type="button" class="verdict" title="All findings" aria-label={`Can it deploy? ${r.verdict.word}, ${words}. All findings`} onClick={() => ((mode.value = "analyse"), (drawerOpen.value = true))}>
+            <button type="button" class="verdict" title="All findings" onClick={() => ((mode.value = "analyse"), (drawerOpen.value = true))}>
                 <span class="q">Can it deploy?</span>
                 <span class={`answer ${severityClass[r.verdict.severity]}`}><Icon name={severityIcon[r.verdict.severity]} size={20} /><span>{r.verdict.word}</span></span>
                 <span class="l">{words}</span>

@@ -46,12 +46,12 @@ export function Legend({ compact }: { compact: boolean }) {
     };
     const tickValue = (k: number) => scale.lo + (k / 4) * (scale.hi - scale.lo);
     // five long figures have no room beside each other
-    const ticks = Math.max(...[0, 4].map((k) => figure(tickValue(k), tickDigits).length)) > 5 ? [0, 2, 4] : [0, 1, 2, 3, 4];
+    const ticks = tiny || Math.max(...[0, 4].map((k) => figure(tickValue(k), tickDigits).length)) > 5 ? [0, 2, 4] : [0, 1, 2, 3, 4];
     return (
         <section class={`legend float${compact ? " compact" : ""}`} aria-label="Legend">
             <header>
                 <Choice name="Colour by" bare value={fieldId.value} options={availableFields.value.map((f) => ({ value: f.id, title: f.unit && mode.value === "analyse" ? `${f.title}, ${unitLabel(f.unit, unit)}` : f.title }))} onChange={useField} />
-                <span class="range">{figure(range[0], rangeDigits)} to {signed && range[1] > 0 ? "+" : ""}{figure(range[1], rangeDigits)}{label && field.unit !== "N" ? ` ${label}` : ""}</span>
+                <span class="range">{figure(range[0], rangeDigits)} to {signed && range[1] > 0 ? "+" : ""}{figure(range[1], rangeDigits)}{label && mode.value !== "analyse" ? ` ${label}` : ""}</span>
             </header>
             <svg viewBox={`0 0 ${width} ${chart + bar + 24}`} role="img"
                 aria-label={`${field.title}: values from ${number(range[0], field.digits)} to ${number(range[1], field.digits)} ${label}`}
