@@ -550,6 +550,27 @@ export const scenarios = {
             }, { ...options, reducedMotion: "reduce", bypassCSP: true });
     },
 
+    async "at 200 % and on small screens no figure is cut, and the legend leaves the shell free"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            for (const [width, height] of [[640, 360], [720, 450], [960, 540], [1280, 720], [1440, 900], [1920, 1080]]) {
+                await page.setViewportSize({ width, height });
+                for (const mode of ["Alt+1", "Alt+2"]) {
+                    await hand.key(mode);
+                    await page.waitForTimeout(150);
+                    const { cut, share } = await page.evaluate(() => {
+                        const leaves = [...document.querySelectorAll(".checks *, .legend *, .view-title *, .timeline *")].filter((e) => e.children.length === 0 && e.clientWidth > 0);
+                        const legend = document.querySelector(".legend").getBoundingClientRect();
+                        const view = document.querySelector(".views").getBoundingClientRect();
+                        return { cut: leaves.filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent), share: (legend.width * legend.height) / (view.width * view.height) };
+                    });
+                    assert.deepEqual(cut, [], `${width} x ${height}, ${mode}`);
+                    assert.ok(share < 0.15, `the legend covers ${share} of the views at ${width} x ${height}`);
+                }
+            }
+        }, { reducedMotion: "reduce" });
+    },
+
     async "a Rhino document is made in the page, under its policy, and holds every panel by its name"(browser) {
         await withStudio(browser, bowl, async (hand) => {
             await hand.key("Control+e");
