@@ -912,6 +912,34 @@ static void svg_is_well_formed_whatever_the_title(void** state)
     free(text);
 }
 
+// A name of 80 letters of two bytes each, of which the last that fits whole is kept; and bytes that are no letters.
+static void titles_are_whole_characters(void** state)
+{
+    (void)state;
+    char name[161] = "x", kept[128] = "x";
+    for (int k = 0; k < 79; ++k)
+        memcpy(name + 1 + 2 * k, "\xc3\xa4", 3);
+    for (int k = 0; k < 63; ++k)
+        memcpy(kept + 1 + 2 * k, "\xc3\xa4", 3);
+    const char* const titles[][2] = {{name, kept},
+                                     {name + 1, NULL},
+                                     {"broken \xff\xc3", "broken ??"},
+                                     {"\xf0\x9f\x8f\x95 dome", "\xf0\x9f\x8f\x95 dome"}};
+    ax_fabricate_options fabricate = ax_fabricate_options_default();
+    fabricate.frames = 0;
+    for (size_t k = 0; k < sizeof titles / sizeof *titles; ++k) {
+        ax_cut_plan plan;
+        ax_error error;
+        const ax_export_options options = {.title = titles[k][0], .fabricate = &fabricate, .plan = &plan};
+        const char* const paths[] = {in_folder("dome.plan.pdf")};
+        if (ax_export_files(&sample, 1, paths, &options, &error) != AX_OK)
+            fail_msg("%s", error.message);
+        assert_string_equal(plan.title, titles[k][1] ? titles[k][1] : kept + 1);
+        ax_cut_plan_free(&plan);
+        assert_int_equal(clear_folder(), 1);
+    }
+}
+
 static void sheets_are_files_beside_an_overview(void** state)
 {
     (void)state;
@@ -1115,6 +1143,7 @@ int main(void)
         cmocka_unit_test(svg_labels_only_panels_that_can_hold_two_millimetres),
         cmocka_unit_test(svg_is_the_same_wherever_the_design_lies),
         cmocka_unit_test(svg_is_well_formed_whatever_the_title),
+        cmocka_unit_test(titles_are_whole_characters),
         cmocka_unit_test(sheets_are_files_beside_an_overview),
         cmocka_unit_test(files_written_side_by_side_are_those_written_alone),
         cmocka_unit_test(coupons_go_to_cut_files_only),

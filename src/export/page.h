@@ -1,4 +1,4 @@
-// Cut plans as PDF. The lines are written directly: drawing them with cairo took ten times as long, which is minutes for large designs.
+// Cut plans as PDF. The lines are written directly: cairo took over ten times as long (docs/making.md, Tried and rejected).
 #pragma once
 
 #include "ax/export.h"

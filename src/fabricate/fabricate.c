@@ -59,7 +59,7 @@ static void begin(ax_work* w)
     plan->sizes = o->sizes;
     int profiles;
     plan->profile = o->profile ? o->profile : ax_profiles(&profiles);
-    snprintf(plan->title, sizeof plan->title, "%s", o->title ? o->title : "");
+    ax_plan_set_title(plan, o->title);
     snprintf(plan->date, sizeof plan->date, "%s", o->date ? o->date : "");
     w->joint = (ax_joint_job){plan->joint_values, &plan->material};
 }

@@ -417,7 +417,7 @@ ax_status ax_frame_plan(const ax_design* design, const ax_support_frame* frame, 
                        "No two supports follow each other on the rim, so there is no frame to draw. Support the rim "
                        "(simulate with --support rim) and export again.");
     plan->profile = ax_profiles(&profiles);
-    snprintf(plan->title, sizeof plan->title, "%s", title ? title : "");
+    ax_plan_set_title(plan, title);
     template t = {.design = design, .frame = frame, .b = {.plan = plan}};
     double x = margin + 100 + between, height = 3 * margin; // the check bar stands left of all
     for (int k = 0; k < frame->curve_count; ++k)

@@ -4,8 +4,10 @@
 #include "fabricate/stroke_font.h"
 
 #include <assert.h>
+#include <jansson.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char* const operation_names[] = {"LABEL", "SCORE", "HOLE", "SLIT", "CUT", "NOTE"};
 
@@ -13,6 +15,31 @@ const char* ax_operation_name(ax_operation operation)
 {
     assert((size_t)operation < AX_OPERATIONS);
     return operation_names[operation];
+}
+
+// Bytes of the character that begins here, 0: it is none; jansson knows UTF-8.
+static size_t character(const char* at, size_t left)
+{
+    for (size_t length = 1; length <= 4 && length <= left; ++length) {
+        json_t* valid = json_stringn(at, length);
+        json_decref(valid);
+        if (valid)
+            return length;
+    }
+    return 0;
+}
+
+void ax_plan_set_title(ax_cut_plan* plan, const char* title)
+{
+    size_t used = 0, left = title ? strlen(title) : 0;
+    while (left) {
+        size_t length = character(title, left), taken = length ? length : 1;
+        if (used + taken >= sizeof plan->title)
+            break;
+        memcpy(plan->title + used, length ? title : "?", taken);
+        used += taken, title += taken, left -= taken;
+    }
+    plan->title[used] = '\0';
 }
 
 void ax_cut_plan_free(ax_cut_plan* plan)

@@ -34,6 +34,9 @@ void ax_plan_copy(ax_plan_builder* b, int path, const ax_motion* motion);
 // Appends the strokes of `text`, its base line's left end at (x, y), running in direction (cos, sin) of the motion.
 void ax_plan_text(ax_plan_builder* b, const char* text, double height, const ax_motion* place);
 
+// Sets the plan's title (NULL: none): whole characters, as many as fit; bytes that are not UTF-8, as names of files may have, become '?'.
+void ax_plan_set_title(ax_cut_plan* plan, const char* title);
+
 // Area with the sign of the turning sense, and length, of a path.
 double ax_path_area(const ax_cut_plan* plan, const ax_cut_path* path);
 double ax_path_length(const ax_cut_plan* plan, const ax_cut_path* path);
