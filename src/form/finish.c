@@ -167,14 +167,9 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
     *finish = (ax_finish){.reason = ""};
     ax_form_build(f);
     double unit = ax_form_sides_mean(f);
-    double worst = fmax(ax_form_flat_error(f), f->dynamics.kind == AX_DYNAMICS_NONE ? 0 : ax_form_deployed_error(f));
     if (f->dynamics.kind == AX_DYNAMICS_NONE)
         return ax_fail(error, AX_CANNOT_REALISE,
                        "Nothing has been deployed yet: let the form expand, hang or inflate before it is finished.");
-    if (worst > 0.3)
-        return ax_fail(error, AX_CANNOT_REALISE,
-                       "The form is far from a linkage: edges are off by %.0f %%. Let it settle, or ask less of it.",
-                       100 * worst);
     ax_joint_place* places = AX_NEW0(ax_joint_place, n);
     ax_hold* holds = AX_NEW0(ax_hold, n);
     list_places(f, places, holds);
