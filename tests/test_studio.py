@@ -617,7 +617,9 @@ class Surfaces(StudioCase):
         studio = self.start()
         page = self.page(studio)
         for name, data in (("nothing.obj", b""), ("text.obj", b"hello"), ("sphere.stl", os.urandom(5000))):
-            self.disagree("bad_input", "", page.ask("check", upload=studio.upload(name, data)))
+            answer = page.ask("check", upload=studio.upload(name, data))
+            self.disagree("bad_input", name, answer)  # by its name, not by where it lies
+            self.assertNotIn(str(self.folder), answer["error"]["message"])
         self.disagree("bad_input", "upload", page.ask("check", upload="x" * 20))
         self.disagree("usage", "", page.ask("check"))
         self.disagree("bad_input", "outside", page.ask("check", path="../../etc/passwd"))

@@ -51,6 +51,17 @@ static void send_surface(desk* d, const job* j, const ax_mesh* mesh, const ax_sc
     hub_send(d->hub, j->client, block, size, &d->cancel);
 }
 
+// An upload has a name for people, and a place that is none of theirs.
+static void call_by_name(ax_error* error, const char* path, const char* name)
+{
+    char* at = error ? strstr(error->message, path) : NULL;
+    size_t length = strlen(path), room = strlen(name);
+    if (!at || room > length)
+        return;
+    memcpy(at, name, room);
+    memmove(at + room, at + length, strlen(at + length) + 1);
+}
+
 static ax_status check(desk* d, const job* j, json_t** result, ax_error* error)
 {
     const char *upload = NULL, *path = NULL, *unit = "m", *up = ax_up_words[AX_UP_FILE];
@@ -97,6 +108,8 @@ static ax_status check(desk* d, const job* j, json_t** result, ax_error* error)
     }
     ax_screen_free(&screen);
     ax_mesh_free(&mesh);
+    if (status != AX_OK)
+        call_by_name(error, file, name);
     ax_free(file);
     return status;
 }
