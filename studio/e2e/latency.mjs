@@ -1,41 +1,98 @@
-// From brush movement to the new deployed state on screen, measured in the page while a hand paints: prints a table. Started by hand on
-// a quiet machine: cd build/studio && AUXSHELL=$PWD/../release/bin/auxshell AUXSHELL_ROOT=$PWD/../.. node e2e/latency.mjs [PANELS...]
+// From brush movement to the new deployed state on screen, while a hand paints: prints a table. Started by hand on a quiet machine:
+// cd build/studio && AUXSHELL=$PWD/../release/bin/auxshell AUXSHELL_ROOT=$PWD/../.. node e2e/latency.mjs [PANELS...]
+//
+// It begins at the pointer event's time stamp and ends when the browser says that the first picture which holds the movement was
+// presented. Drawing in software is what a graphics card would take over: panels into pixels, WebGL, and putting the page together.
+// Its time is that of one and the same run, as the browser's own trace has it.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { Hand, Studio, launch } from "./studio.mjs";
 
 const movements = 150;
 const parts = [
-    ["pointer to handler", (s) => s.sent - s.moved],
+    ["pointer to preview", (s) => s.sent - s.moved],
     ["solved and arrived", (s) => s.arrived - s.sent],
-    ["waits for its turn, submitted", (s) => s.submitted - s.arrived],
-    ["without the renderer", (s) => s.submitted - s.moved],
-    ["drawn by the renderer", (s) => s.drawn - s.submitted],
-    ["hand to screen", (s) => s.drawn - s.moved],
+    ["waits for its turn", (s) => s.began - s.arrived],
+    ["drawn and presented", (s) => s.presented - s.began],
+    ["hand to screen", (s) => s.presented - s.moved],
+    ["of it drawing in software", (s) => s.software],
+    ["hand to screen without", (s) => s.presented - s.moved - s.software],
 ];
 
 const quantile = (values, q) => values.slice().sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(q * values.length))];
 
 /** What a hand does for some seconds, 60 places a second: circles over the middle of the flat view. It does not wait for the page. */
 async function paint(hand) {
-    const { mouse } = hand.page;
+    const { page } = hand;
+    const session = await page.context().newCDPSession(page); // a driver that takes little from what it measures
     const box = [await hand.flat(0.5, 0.48), await hand.flat(0.66, 0.64)];
-    const at = (k) => [box[0][0] + (box[1][0] - box[0][0]) * Math.cos(k / 14), box[0][1] + (box[1][1] - box[0][1]) * Math.sin(k / 9)];
-    await mouse.move(...at(0));
-    await mouse.down();
+    const mouse = (type, k) => session.send("Input.dispatchMouseEvent", {
+        type, x: box[0][0] + (box[1][0] - box[0][0]) * Math.cos(k / 14), y: box[0][1] + (box[1][1] - box[0][1]) * Math.sin(k / 9),
+        button: "left", buttons: 1, clickCount: type === "mouseMoved" ? 0 : 1,
+    });
+    await mouse("mousePressed", 0);
     const began = performance.now();
     const moves = [];
     for (let k = 1; k <= movements; k++) {
         await new Promise((resolve) => setTimeout(resolve, began + (k * 1000) / 60 - performance.now()));
-        moves.push(mouse.move(...at(k)));
+        moves.push(mouse("mouseMoved", k));
     }
     await Promise.all(moves);
-    await hand.page.waitForFunction(() => auxshell.latency.pending() === 0, null, { timeout: 30000 }); // the last ones are shown before the stroke ends
-    await mouse.up();
+    await page.waitForFunction(() => auxshell.latency.pending() === 0, null, { timeout: 30000 }); // the last ones are shown before the stroke ends
+    await page.waitForTimeout(100);
+    await mouse("mouseReleased", movements);
 }
 
-/** `drawn`: false leaves out all drawing, of the scenes and of the page: what is left is this project's own part of the way. */
-async function measure(browser, panels, drawn) {
+/** Does something and returns what the browser traced meanwhile. */
+async function traced(browser, action) {
+    const session = await browser.newBrowserCDPSession();
+    const events = [];
+    session.on("Tracing.dataCollected", ({ value }) => events.push(...value));
+    await session.send("Tracing.start", {
+        transferMode: "ReportEvents", traceConfig: { includedCategories: ["devtools.timeline", "viz", "gpu", "blink.user_timing"], excludedCategories: ["*"] },
+    });
+    await action();
+    const complete = new Promise((resolve) => session.once("Tracing.tracingComplete", resolve));
+    await session.send("Tracing.end");
+    await complete;
+    await session.detach();
+    return events;
+}
+
+/** Length of a union of intervals within [from, to]. */
+function covered(intervals, from, to) {
+    let [sum, end] = [0, from];
+    for (const [a, b] of intervals.map(([a, b]) => [Math.max(a, from), Math.min(b, to)]).filter(([a, b]) => b > a).sort((p, q) => p[0] - q[0])) {
+        sum += Math.max(0, b - Math.max(a, end));
+        end = Math.max(end, b);
+    }
+    return sum;
+}
+
+/** Adds to every sample when its picture was presented and how long software drew it. */
+function complete(samples, events, origin) {
+    const mark = events.find((e) => e.name === "origin" && e.cat.includes("user_timing"));
+    const at = (e) => (e.ts - mark.ts) / 1000 + origin;
+    const frames = new Map(); // animation frames of the page by their ids
+    const open = new Map();
+    for (const e of events.filter((e) => e.pid === mark.pid).sort((a, b) => a.ts - b.ts)) {
+        if (e.name === "AnimationFrame" && e.ph === "b") {
+            open.set(e.id2?.local, e.args.id);
+            frames.set(e.args.id, { from: at(e), to: Infinity, presented: NaN });
+        } else if (e.name === "AnimationFrame" && e.ph === "e") frames.get(open.get(e.id2?.local)).to = at(e);
+        else if (e.name === "AnimationFrame::Presentation" && frames.has(e.args.id)) frames.get(e.args.id).presented = at(e);
+    }
+    const software = events.filter((e) => e.ph === "X" && (e.name === "Display::DrawAndSwap" || e.name === "GPUTask")).map((e) => [at(e), at(e) + e.dur / 1000]);
+    for (const s of samples) {
+        // a frame that changed nothing says so at once; the picture is then in the next one that was presented
+        const frame = [...frames.values()].filter((f) => f.to >= s.submitted && f.presented >= s.submitted).sort((a, b) => a.from - b.from)[0];
+        s.presented = frame?.presented ?? NaN;
+        s.software = covered([...software, [s.began, s.submitted]], s.began, s.presented);
+    }
+    return samples.filter((s) => Number.isFinite(s.presented));
+}
+
+async function measure(browser, panels) {
     const studio = new Studio();
     writeFileSync(join(studio.folder, "shell.json"), JSON.stringify({
         format: "auxshell-recipe", version: 1, operators: [
@@ -47,23 +104,16 @@ async function measure(browser, panels, drawn) {
         const hand = await Hand.open(browser, studio.address, { viewport: { width: 1440, height: 900 }, refines: true });
         await hand.key("b");
         await hand.page.waitForFunction(() => auxshell.stage.value.atRest, null, { timeout: 60000 });
-        if (!drawn)
-            await hand.page.evaluate(() => {
-                const { renderer } = auxshell.stage.value;
-                renderer.render = renderer.clear = renderer.setPixelRatio = () => undefined;
-                auxshell.stage.value.overlays.clear();
-                const sheet = new CSSStyleSheet();
-                sheet.replaceSync("#app * { visibility: hidden } #app .views { visibility: visible; background: none }");
-                document.adoptedStyleSheets = [sheet];
-            });
         await hand.page.evaluate(() => (auxshell.latency.samples.length = 0));
-        const began = performance.now();
-        await paint(hand);
-        const seconds = (performance.now() - began) / 1000;
+        let origin = 0;
+        const events = await traced(browser, async () => {
+            origin = await hand.page.evaluate(() => performance.mark("origin").startTime);
+            await paint(hand);
+        });
         const found = await hand.page.evaluate(() => ({ samples: auxshell.latency.samples, panels: auxshell.shell().linkage.panels, renderer: auxshell.stage.value.rendererName }));
         await hand.rest();
         await hand.page.context().close();
-        return { ...found, seconds };
+        return { ...found, samples: complete(found.samples, events, origin), all: found.samples.length };
     } finally {
         await studio.remove();
     }
@@ -71,15 +121,14 @@ async function measure(browser, panels, drawn) {
 
 const browser = await launch();
 const sizes = process.argv.slice(2).map(Number);
-for (const panels of sizes.length ? sizes : [2000, 10000])
-    for (const drawn of [false, true]) {
-        const found = await measure(browser, panels, drawn);
-        const states = new Set(found.samples.map((s) => s.drawn)).size;
-        console.log(`\n${found.panels} panels, ${drawn ? found.renderer : "nothing drawn"}: ${found.samples.length} movements shown in ${states} pictures, ${(states / found.seconds).toFixed(0)} a second`);
-        console.log(`${"ms".padEnd(32)}${["median", "p95", "most"].map((w) => w.padStart(9)).join("")}`);
-        for (const [name, of] of parts) {
-            const values = found.samples.map(of);
-            console.log(`${name.padEnd(32)}${[0.5, 0.95, 1].map((q) => quantile(values, q).toFixed(1).padStart(9)).join("")}`);
-        }
+for (const panels of sizes.length ? sizes : [2000, 10000]) {
+    const { samples, all, panels: count, renderer } = await measure(browser, panels);
+    const pictures = new Set(samples.map((s) => s.presented)).size;
+    console.log(`\n${count} panels, ${renderer}: ${samples.length} of ${all} movements in ${pictures} pictures, ${(pictures / (movements / 60)).toFixed(0)} a second`);
+    console.log(`${"ms".padEnd(32)}${["median", "p95", "most"].map((w) => w.padStart(9)).join("")}`);
+    for (const [name, of] of parts) {
+        const values = samples.map(of);
+        console.log(`${name.padEnd(32)}${[0.5, 0.95, 1].map((q) => quantile(values, q).toFixed(1).padStart(9)).join("")}`);
     }
+}
 await browser.close();

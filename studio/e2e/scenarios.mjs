@@ -621,8 +621,8 @@ export const scenarios = {
                 window.most = 0;
                 let flying = 0;
                 const submitted = stage.onSubmitted;
-                stage.onSubmitted = () => {
-                    const done = submitted();
+                stage.onSubmitted = (began) => {
+                    const done = submitted(began);
                     window.most = Math.max(window.most, ++flying);
                     return () => (flying--, done());
                 };
@@ -637,7 +637,7 @@ export const scenarios = {
             await hand.stepsAre("start_circle", "gradient_radial", "rim_circle", "inflation", "paint");
             assert.ok(samples.length >= 5, `${samples.length} previews were shown`);
             assert.equal(most, 1, "pictures with the renderer");
-            for (const s of samples) assert.ok(s.moved <= s.sent && s.sent <= s.arrived && s.arrived <= s.submitted && s.submitted <= s.drawn, JSON.stringify(s));
+            for (const s of samples) assert.ok(s.moved <= s.sent && s.sent <= s.arrived && s.arrived <= s.began && s.began <= s.submitted && s.submitted <= s.drawn, JSON.stringify(s));
             const all = samples.map((s) => s.drawn - s.moved).sort((a, b) => a - b);
             note(`${all.length} previews shown, median ${all[all.length >> 1].toFixed(0)} ms, p95 ${all[Math.floor(0.95 * all.length)].toFixed(0)} ms from hand to screen, in software`);
         });

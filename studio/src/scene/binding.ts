@@ -97,9 +97,9 @@ export function bindScene(stage: Stage): () => void {
 
     stops.push(holdStates(() => stage.rendering));
     stage.onBefore = settleFrames;
-    stage.onSubmitted = () => {
+    stage.onSubmitted = (began) => {
         const serial = currentShell()?.serial ?? 0;
-        stateSubmitted(serial);
+        stateSubmitted(serial, began);
         return () => {
             stateDrawn(serial);
             acknowledge();

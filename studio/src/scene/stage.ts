@@ -65,8 +65,8 @@ export class Stage {
     scenes: Record<StateId, ShellScene> | null = null;
     readonly overlays = new Set<Overlay>();
     readonly drawn = new Set<Drawn>();
-    /** A picture was handed to the graphics card; what it returns is called when the card has drawn it. */
-    onSubmitted: (() => () => void) | null = null;
+    /** A picture that was begun at that time is with the browser or the graphics card; what it returns is called when it is done. */
+    onSubmitted: ((began: number) => () => void) | null = null;
     /** Called before drawing: what is still to be told to the scenes. */
     onBefore: (() => void) | null = null;
     animated = true;
@@ -333,8 +333,9 @@ export class Stage {
         if (this.stale && !this.flying) {
             clearTimeout(this.restTimer);
             const waits = this.slow && (this.held || performance.now() - this.changed < rests[0]);
+            const began = performance.now();
             const moving = this.draw(now, waits ? "quick" : this.slow && performance.now() - this.changed < rests[1] ? "plain" : "whole");
-            this.fly(this.onSubmitted?.());
+            this.fly(this.onSubmitted?.(began));
             if (moving) this.invalidate();
         }
         if (this.staleOverlay) this.drawOverlay();

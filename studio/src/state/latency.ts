@@ -7,9 +7,11 @@ export interface Sample {
     sent: number;
     /** The first state that holds it came in, */
     arrived: number;
-    /** was handed to the graphics card, */
+    /** began to be drawn, */
+    began: number;
+    /** was with the browser or the graphics card, */
     submitted: number;
-    /** and drawn. */
+    /** and done. */
     drawn: number;
 }
 
@@ -39,19 +41,17 @@ export function gestureEnded(): void {
 }
 
 /** What held this preview or a later one got so far. */
-function reached(serial: number, part: "arrived" | "submitted" | "drawn"): void {
-    const now = performance.now();
+function reached(serial: number, parts: Partial<Sample>): void {
     for (const [key, sample] of under) {
         if (key > serial) break;
-        if (part !== "arrived" && sample[part === "drawn" ? "submitted" : "arrived"] === undefined) continue;
-        sample[part] ??= now;
-        if (part !== "drawn") continue;
-        samples.push(sample as Sample);
+        under.set(key, { ...parts, ...sample });
+        if (parts.drawn === undefined || sample.submitted === undefined) continue;
+        samples.push(under.get(key) as Sample);
         under.delete(key);
     }
     if (samples.length > most) samples.splice(0, most / 2);
 }
 
-export const stateArrived = (serial: number) => reached(serial, "arrived");
-export const stateSubmitted = (serial: number) => reached(serial, "submitted");
-export const stateDrawn = (serial: number) => reached(serial, "drawn");
+export const stateArrived = (serial: number) => reached(serial, { arrived: performance.now() });
+export const stateSubmitted = (serial: number, began: number) => reached(serial, { began, submitted: performance.now() });
+export const stateDrawn = (serial: number) => reached(serial, { drawn: performance.now() });
