@@ -214,7 +214,7 @@ static double publish(desk* d, bool whole)
         d->linkage = json_dumps(event, JSON_COMPACT);
         json_decref(event);
     }
-    shape_put_places(b, &v, &d->frame);
+    shape_put_places(b, &v, &d->frame, whole);
     if (whole) {
         shape_put_rest(b, &v, &measures);
         shape_put_exact(b, &v, form, exact);

@@ -98,7 +98,7 @@ static ax_status look(desk* d, const job* j, json_t** result, ax_error* error)
     ax_form_view view = ax_form_look(form);
     shape_measures measures = shape_measure(form, &view);
     shape_frame frame = shape_new_linkage(&b, &view);
-    shape_put_places(&b, &view, &frame);
+    shape_put_places(&b, &view, &frame, true);
     shape_put_rest(&b, &view, &measures);
     shape_put_exact(&b, &view, form, NULL);
     hub_tell(d->hub, d, j->client, describe_linkage(d->id, b.topology, &view, frame.origin, frame.flat_origin, name));

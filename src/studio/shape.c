@@ -80,11 +80,12 @@ shape_frame shape_new_linkage(board* b, const ax_form_view* v)
     return frame;
 }
 
-void shape_put_places(board* b, const ax_form_view* v, const shape_frame* frame)
+void shape_put_places(board* b, const ax_form_view* v, const shape_frame* frame, bool all)
 {
     int n = v->linkage->hinge_count;
     board_put_numbers(b, SECTION_FLAT, 2 * n, *v->flat, 2, frame->flat_origin);
-    board_put_numbers(b, SECTION_DEPLOYED, 3 * n, *v->deployed, 3, frame->origin);
+    if (all || !v->simulated)
+        board_put_numbers(b, SECTION_DEPLOYED, 3 * n, *v->deployed, 3, frame->origin);
     if (v->simulated)
         board_put_numbers(b, SECTION_SIMULATED, 3 * n, *v->simulated, 3, frame->origin);
     else

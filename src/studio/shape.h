@@ -21,7 +21,8 @@ shape_measures shape_measure(ax_form* form, const ax_form_view* view);
 void shape_measures_free(shape_measures* m);
 
 shape_frame shape_new_linkage(board* b, const ax_form_view* view);
-void shape_put_places(board* b, const ax_form_view* view, const shape_frame* frame);
+// `all`: also the deployed state where the simulated one is what is seen.
+void shape_put_places(board* b, const ax_form_view* view, const shape_frame* frame, bool all);
 void shape_put_rest(board* b, const ax_form_view* view, const shape_measures* measures);
 // Supports; and of an exact design (NULL: it is not exact) edge forces and reactions.
 void shape_put_exact(board* b, const ax_form_view* view, const ax_form* form, const ax_design* design);

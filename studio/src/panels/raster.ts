@@ -36,7 +36,7 @@ export function clear(picture: Picture): void {
 
 /** Share s of b, the rest of a; 0xBBGGRR. */
 function mix(a: number, b: number, s: number): number {
-    const k = Math.round(256 * s);
+    const k = (256 * s + 0.5) | 0;
     const two = (((a & 0xff00ff) * (256 - k) + (b & 0xff00ff) * k) >>> 8) & 0xff00ff;
     return two | ((((a >>> 8) & 0xff) * (256 - k) + ((b >>> 8) & 0xff) * k) & 0xff00);
 }
@@ -47,7 +47,7 @@ let screen = new Float32Array(0);
 function project(places: Float32Array, { x, y, width, height, matrix: m }: Window): void {
     if (screen.length < places.length) screen = new Float32Array(places.length);
     for (let i = 0; i < places.length; i += 3) {
-        const [px, py, pz] = [places[i], places[i + 1], places[i + 2]];
+        const px = places[i], py = places[i + 1], pz = places[i + 2];
         const w = m[3] * px + m[7] * py + m[11] * pz + m[15];
         const s = w > 1e-9 ? 1 / w : NaN;
         screen[i] = x + 0.5 * width * (1 + (m[0] * px + m[4] * py + m[8] * pz + m[12]) * s);
@@ -55,6 +55,8 @@ function project(places: Float32Array, { x, y, width, height, matrix: m }: Windo
         screen[i + 2] = (m[2] * px + m[6] * py + m[10] * pz + m[14]) * s;
     }
 }
+
+const inverse = (x: number, y: number) => 1 / Math.sqrt(x * x + y * y);
 
 /** An outline's half width and the softness of its inner side, pixels. */
 const [lineFrom, lineTo] = [0.4, 1.2];
@@ -85,40 +87,37 @@ export function drawPanels(picture: Picture, window: Window, places: Float32Arra
         const y0 = Math.max(top, Math.floor(Math.min(ay, by, cy) - 0.5)), y1 = Math.min(bottom, Math.ceil(Math.max(ay, by, cy) + 0.5));
         if (x0 >= x1 || y0 >= y1) continue;
         // distances in pixels from the three edges, positive inside: d = u x + v y + w
-        const la = 1 / Math.hypot(bx - ax, by - ay), lb = 1 / Math.hypot(cx - bx, cy - by), lc = 1 / Math.hypot(ax - cx, ay - cy);
+        const la = inverse(bx - ax, by - ay), lb = inverse(cx - bx, cy - by), lc = inverse(ax - cx, ay - cy);
         const ua = (ay - by) * la, va = (bx - ax) * la, ub = (by - cy) * lb, vb = (cx - bx) * lb, uc = (cy - ay) * lc, vc = (ax - cx) * lc;
         const wa = -ua * ax - va * ay, wb = -ub * bx - vb * by, wc = -uc * cx - vc * cy;
         const bz = screen[b + 2] - az, cz = screen[c + 2] - az;
         const zx = (bz * (cy - ay) - cz * (by - ay)) / area, zy = (cz * (bx - ax) - bz * (cx - ax)) / area;
-        const mark = marks[t];
-        const selected = mark === 128;
+        const selected = marks[t] === 128, hatched = marks[t] === 192;
         const face = selected ? mix(colour(t, front), inks.accent, 0.12) : colour(t, front);
-        const line = selected ? inks.accent : inks.line;
-        const alpha = selected ? 1 : inks.lineAlpha;
+        const line = selected ? inks.accent : mix(face, inks.line, inks.lineAlpha);
         for (let y = y0; y < y1; y++) {
             const v = y + 0.5;
-            const [da, db, dc] = [va * v + wa, vb * v + wb, vc * v + wc];
+            const da = va * v + wa + 0.5 * ua, db = vb * v + wb + 0.5 * ub, dc = vc * v + wc + 0.5 * uc;
             const z = az + zx * (0.5 - ax) + zy * (v - ay);
-            let inside = false;
-            for (let x = x0, i = y * picture.width + x0; x < x1; x++, i++) {
-                const u = x + 0.5;
-                const d = Math.min(ua * u + da, ub * u + db, uc * u + dc);
-                if (d <= -0.5) {
-                    if (inside) break;
-                    continue;
-                }
-                inside = true;
+            // where all three are above -1/2
+            const [pa, pb, pc] = [-(da + 0.5) / ua, -(db + 0.5) / ub, -(dc + 0.5) / uc];
+            const from = Math.max(x0, Math.ceil(Math.max(ua > 0 ? pa : x0, ub > 0 ? pb : x0, uc > 0 ? pc : x0)));
+            const to = Math.min(x1 - 1, Math.floor(Math.min(ua < 0 ? pa : x1, ub < 0 ? pb : x1, uc < 0 ? pc : x1)));
+            for (let x = from, i = y * picture.width + from; x <= to; x++, i++) {
+                const d1 = ua * x + da, d2 = ub * x + db, d3 = uc * x + dc;
+                const d = d1 < d2 ? (d1 < d3 ? d1 : d3) : d2 < d3 ? d2 : d3;
+                if (d <= -0.5) continue; // beside an edge along the row
                 const near = z + zx * x;
                 if (near >= depth[i]) continue;
-                const ground = mark === 192 && (((x + y) & 7) > 4) ? inks.hatch : face;
-                const ink = d < lineTo ? mix(ground, line, alpha * Math.min(1, (lineTo - d) / (lineTo - lineFrom))) : ground;
+                const ground = hatched && ((x + y) & 7) > 4 ? inks.hatch : face;
+                const ink = d >= lineTo ? ground : d <= lineFrom ? line : mix(ground, line, (lineTo - d) / (lineTo - lineFrom));
                 if (d >= 0.5) {
                     pixels[i] = ink | 0xff000000;
                     depth[i] = near;
                 } else { // covers a share of the pixel, over what is there
                     const under = pixels[i], before = under >>> 24;
                     const after = before + (255 - before) * (d + 0.5);
-                    pixels[i] = mix(under & 0xffffff, ink, (255 * (d + 0.5)) / after) | (Math.round(after) << 24);
+                    pixels[i] = mix(under & 0xffffff, ink, (255 * (d + 0.5)) / after) | ((after + 0.5) << 24);
                     if (d >= 0) depth[i] = near;
                 }
             }
