@@ -41,6 +41,7 @@ export class View {
 
 /** A whole picture may take this long, milliseconds. */
 const wholeLimit = 40;
+const overlayPatience = 50;
 /** What must not have changed for this long before a better picture is drawn, and before the whole one. */
 const rests = [250, 1500];
 
@@ -90,6 +91,8 @@ export class Stage {
     private override: Float32Array | undefined;
     private stale = false;
     private staleOverlay = false;
+    private overlayTimer: ReturnType<typeof setTimeout> | undefined;
+    private followed: (() => void) | null = null;
     /** A picture is on its way to the screen. */
     private flying = false;
     /** When something was last to be drawn anew. */
@@ -233,10 +236,18 @@ export class Stage {
         this.invalidate();
     }
 
-    /** Only what lies over the scenes is. */
+    /** Only what lies over the scenes is. While a hand works on a slow renderer that waits for the next picture, for a while: every
+     *  frame of the page delays the states that are on their way here. */
     invalidateOverlay(): void {
         this.staleOverlay = true;
-        this.schedule();
+        if (this.slow && this.held) this.overlayTimer ??= setTimeout(() => this.schedule(), overlayPatience);
+        else this.schedule();
+    }
+
+    /** What the pointer's last move changes: carried out with the next picture or overlay. */
+    follow(move: () => void): void {
+        this.followed = move;
+        this.invalidateOverlay();
     }
 
     /** A hand begins or ends its work on the views. */
@@ -328,6 +339,9 @@ export class Stage {
 
     private tick(now: number): void {
         this.request = 0;
+        const follow = this.followed;
+        this.followed = null;
+        follow?.();
         if (this.dirtyPlaces && !this.flying) this.placeShell();
         this.onBefore?.();
         if (this.stale && !this.flying) {
@@ -426,6 +440,8 @@ export class Stage {
 
     private drawOverlay(): void {
         this.staleOverlay = false;
+        clearTimeout(this.overlayTimer);
+        this.overlayTimer = undefined;
         const ratio = this.overlay.width / Math.max(1, this.width);
         this.context2d.setTransform(ratio, 0, 0, ratio, 0, 0);
         this.context2d.clearRect(0, 0, this.width, this.height);
@@ -512,6 +528,7 @@ export class Stage {
     dispose(): void {
         cancelAnimationFrame(this.request);
         clearTimeout(this.restTimer);
+        clearTimeout(this.overlayTimer);
         this.setShell(null);
         cancelAnimationFrame(this.request);
         this.renderer.dispose();

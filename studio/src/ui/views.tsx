@@ -362,10 +362,14 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
             if (pointer.value) leave();
             return;
         }
+        if (gesture) {
+            if (!hearsAll) work(event);
+            stage.follow(() => hover(hitOf(event, view)));
+            return;
+        }
         const hit = hitOf(event, view);
         hover(hit);
-        if (!gesture) tool.value.move?.(hit, false);
-        else if (!hearsAll) work(event);
+        tool.value.move?.(hit, false);
         stage.invalidateOverlay();
     };
     // while a tool is at work it hears of movements at once, where the browser tells of them before the next frame
