@@ -292,7 +292,7 @@ static void constraints_hold(void** state)
         int chosen[6], count = 0, wanted = kind == AX_HELD_LINE ? 3 : 6; // hinges across the dome
         double places[6][3];
         for (int h = 0; h < view.linkage->hinge_count && count < wanted; ++h)
-            if (fabs(view.sheet[h][1] - 0.3) < 0.6 * view.spacing &&
+            if (fabs(view.sheet[h][1] - 0.3) < 1.2 * view.spacing &&
                 (count == 0 || view.sheet[h][0] > view.sheet[chosen[count - 1]][0]))
                 chosen[count++] = h;
         for (int k = 0; k < count; ++k) {

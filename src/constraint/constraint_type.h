@@ -63,6 +63,7 @@ typedef struct ax_constraint_type {
     bool partly_flat; // some of its rows live there
     bool approximate; // p is admissible, and y stays if it is, but p is only nearly the nearest; `doc` says how
     bool needs_place; // project() asks the group's geometry
+    bool vanishes;    // p is 0 whatever y: without multipliers such rows are in the matrix alone
     bool eliminated;  // one point, always exactly at p: the solver takes it out of the unknowns
     int lanes; // per block of AX_W constraints: parameter k of constraint l is block[k][l], prepared lanes after them
     const ax_parameter* parameters;

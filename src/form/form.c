@@ -181,6 +181,29 @@ static void list_lines(ax_form* f)
         }
 }
 
+// Every second one of seven hinges on kagome lines, once each.
+static void list_wide(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    f->wide = ax_alloc(3 * (size_t)linkage->triangle_count, sizeof *f->wide);
+    f->wide_count = 0;
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int k = 0; k < 6; ++k) { // an edge begins a row in both directions
+            int from = linkage->triangles[t][k % 3], at = linkage->triangles[t][(k + 1 + k / 3) % 3];
+            int row[4] = {from};
+            for (int step = 1; at >= 0; ++step) {
+                if (step % 2 == 0)
+                    row[step / 2] = at;
+                if (step == 6)
+                    break;
+                int next = follow(linkage, (const int(*)[2])f->holder, from, at);
+                from = at, at = next;
+            }
+            if (at >= 0 && row[0] < row[3])
+                memcpy(f->wide[f->wide_count++], row, sizeof row);
+        }
+}
+
 ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
 {
     ax_form* f = AX_NEW0(ax_form, 1);
@@ -220,6 +243,7 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
             f->holes[f->hole_count++] = k;
     list_mouths(f);
     list_lines(f);
+    list_wide(f);
     f->mouth_min = standard_mouth;
     f->released = true;
     f->dynamics = ax_form_dynamics_default();
@@ -262,10 +286,11 @@ void ax_form_free(ax_form* f)
         ax_free((void*)f->underlay_names[k]);
         ax_mesh_free(f->underlays + k);
     }
-    void* blocks[] = {f->centres,    f->mouths,    f->lines,    f->bends,          f->holder,     f->holes,
-                      f->prescribed, f->rim,       f->held,     f->sets,           f->underlays,  f->flat,
-                      f->deployed,   f->simulated, f->side,     f->underlay_names, f->clearances, f->pending,
-                      f->realised,   f->opening,   f->material, f->scratch,        f->lanes,      f->stretch};
+    void* blocks[] = {f->wide,    f->centres,        f->mouths,     f->lines,    f->bends,
+                      f->holder,  f->holes,          f->prescribed, f->rim,      f->held,
+                      f->sets,    f->underlays,      f->flat,       f->deployed, f->simulated,
+                      f->side,    f->underlay_names, f->clearances, f->pending,  f->realised,
+                      f->opening, f->material,       f->scratch,    f->lanes,    f->stretch};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_free(f);
@@ -277,6 +302,20 @@ static double outline_area(const ax_form_start* start)
     for (int k = 0; k < start->outline_count; ++k)
         area += 0.5 * ax_cross2(start->outline[k], start->outline[(k + 1) % start->outline_count]);
     return area;
+}
+
+// The border follows an outline by whole panels, and their number decides whether the rim stands within it or without: a dome's rise
+// told 600 panels from 2,500 by it. The sheet as a whole is scaled to the area of its outline.
+static void fit_area(ax_lattice* lattice, double area)
+{
+    const ax_linkage* linkage = &lattice->linkage;
+    double cell =
+        sqrt(3) / 4 * lattice->spacing * lattice->spacing; // what a panel takes up, with its share of the holes
+    double scale = sqrt(area / (linkage->triangle_count * cell));
+    for (int h = 0; h < linkage->hinge_count; ++h)
+        for (int c = 0; c < 2; ++c)
+            lattice->hinges[h][c] = lattice->offset[c] + scale * (lattice->hinges[h][c] - lattice->offset[c]);
+    lattice->spacing *= scale;
 }
 
 ax_status ax_form_make(const ax_form_start* start, ax_form** out, ax_error* error)
@@ -322,6 +361,8 @@ ax_status ax_form_make(const ax_form_start* start, ax_form** out, ax_error* erro
     ax_free(points);
     if (status != AX_OK)
         return status;
+    if (!(start->edge > 0) && !start->inside)
+        fit_area(&lattice, fabs(area));
     ax_form* f = ax_form_over(&lattice, start->unit);
     for (int t = 0; t < f->lattice.linkage.triangle_count; ++t) {
         f->prescribed[t] = start->scale;

@@ -417,20 +417,24 @@ static int by_severity(const void* a, const void* b)
     return x->severity != y->severity ? (int)y->severity - (int)x->severity : strcmp(x->kind, y->kind);
 }
 
+static double share_down(const ax_form* f, const double (*x)[3])
+{
+    int down = 0;
+    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t) {
+        double normal[3];
+        panel_normal(f, t, x, normal);
+        down += normal[2] < 0;
+    }
+    return down / (double)f->lattice.linkage.triangle_count;
+}
+
 // Normals that look down, and the curvature that the painted factors sum to. Curvature of the metric lambda^2: minus the Laplacian
 // of ln lambda, summed over discs of several sizes about places spread over the sheet: a surface that carries more than 2 pi turns
 // over.
 static void measure_overhang(const ax_form* f, ax_form_report* r)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
-    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
-    int down = 0;
-    for (int t = 0; t < linkage->triangle_count; ++t) {
-        double normal[3];
-        panel_normal(f, t, x, normal);
-        down += normal[2] < 0;
-    }
-    r->overhang = down / (double)linkage->triangle_count;
+    r->overhang = share_down(f, (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed));
 
     // Curvature of a panel: the flow of ln lambda out of it, across each hinge sqrt 3 times the difference (the dual's weight). What lacks
     // a neighbour is left out.
@@ -457,6 +461,15 @@ static void measure_overhang(const ax_form* f, ax_form_report* r)
         }
     }
     ax_free(curvature);
+}
+
+bool ax_form_left_over(const ax_form* f)
+{
+    if (share_down(f, (const double(*)[3])f->deployed) < 0.02)
+        return false;
+    ax_form_report painted = {0};
+    measure_overhang(f, &painted);
+    return painted.curvature_max < 2 * AX_PI;
 }
 
 // Distance of the part of a panel that comes nearest to a surface, if it is below *least. No part of a triangle is further from its

@@ -12,8 +12,9 @@
 #include <string.h>
 
 // Weights, with panels at 1. docs/form-finding.md tells how each was found.
-static const double hole_weight = 0.1, fair_weight = 0.1, hang_fair_weight = 0.005, bend_weight = 0.01,
-                    hang_bend_weight = 0.003, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
+static const double hole_weight = 0.1, fair_weight = 0.1, held_fair_weight = 0.02, hang_fair_weight = 0.005,
+                    bend_weight = 0.01, held_bend_weight = 0.002, hang_bend_weight = 0.003, wide_weight = 0.01,
+                    hang_wide_weight = 0.005, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
                     proximal = 1e-5, load_strain = 0.1, multiplier_cap = 2;
 static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
 enum { RESIZE_EVERY = 25, STANDARD_ITERATIONS = 400, PATIENCE = 5, REST_CHECK = 25 };
@@ -69,6 +70,22 @@ static int add(ax_solver* s, const char* type, int each, int count, const int* h
     int group = ax_solver_add(s, type_of(type), each, count, points, weight, place);
     ax_free(points);
     return group;
+}
+
+// Fair rows: `near` of neighbours, `bend` of three, and `wide` of every second hinge, which slack holes do not bend as they make kagome
+// lines zigzag. The last one is the stiffness of a length of the design, not of a panel: without, finer sheets fold more finely where
+// there is too much of them. Third differences are a^3 of those of the surface, a the spacing, and 1 / a^2 in number: weights that
+// grow with a^-4, the square of the number of panels, mean the same at every size. `wide` is that of 600 panels, and grows with
+// the power `growth` of their number.
+static void add_fairness(ax_form* f, ax_solver* s, int first, double near, double bend, double wide, double growth)
+{
+    wide *= pow(f->lattice.linkage.triangle_count / 600.0, growth);
+    const int groups[] = {add(s, "fairness", 4, f->line_count, (const int*)f->lines, first, near, NULL),
+                          add(s, "fairness", 3, f->bend_count, (const int*)f->bends, first, bend, NULL),
+                          add(s, "fairness", 4, wide > 0 ? f->wide_count : 0, (const int*)f->wide, first, wide, NULL)};
+    for (int k = 0; k < 3; ++k)
+        if (groups[k] >= 0)
+            ax_solver_set_soft(s, groups[k], true);
 }
 
 // Rim parts and constraints on the deployed hinges, which start at point `first`; under load only what supports.
@@ -193,6 +210,14 @@ static void allow_give(ax_form* f, bool allowed)
     ax_free(lanes);
 }
 
+static bool holds_rim(const ax_form* f)
+{
+    for (int k = 0; k < f->rim_count; ++k)
+        if (f->rim[k].kind != AX_RIM_FREE)
+            return true;
+    return false;
+}
+
 static void build_shape(ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
@@ -202,7 +227,7 @@ static void build_shape(ax_form* f)
     sheet_places(f, f->scratch + n);
     ax_solver* s = ax_solver_make(shares ? 2 * n : n, (const double(*)[3])f->scratch, f->pool);
     ax_form_groups* g = &f->shape_groups;
-    *g = (ax_form_groups){-1, -1, -1, -1, -1, NULL, NULL};
+    *g = (ax_form_groups){-1, -1, -1, -1, NULL, NULL};
     if (shares) {
         int(*points)[12] = ax_alloc((size_t)t, sizeof *points);
         for (int k = 0; k < t; ++k) {
@@ -220,12 +245,13 @@ static void build_shape(ax_form* f)
             memcpy(loops + 6 * k, linkage->hole_hinges + linkage->hole_start[f->holes[k]], 6 * sizeof *loops);
         g->holes = add(s, "cyclic_polygon", 6, f->hole_count, loops, n, hole_weight, NULL);
         ax_free(loops);
-        g->fairness = add(s, "fairness", 4, f->line_count, (const int*)f->lines, n, fair_weight, NULL);
         ax_solver_set_soft(s, g->holes, true);
-        ax_solver_set_soft(s, g->fairness, true);
-        int bend = add(s, "fairness", 3, f->bend_count, (const int*)f->bends, n, bend_weight, NULL);
-        if (bend >= 0)
-            ax_solver_set_soft(s, bend, true);
+        // A free rim gives way to too much, and nothing folds. Between held ones, a little less than the square: where there is far too
+        // much the sheet settles at 2,500 panels too.
+        if (holds_rim(f))
+            add_fairness(f, s, n, held_fair_weight, held_bend_weight, wide_weight, 1.5);
+        else
+            add_fairness(f, s, n, fair_weight, bend_weight, 0, 0);
         add_holders(f, s, n, false, g);
     } else
         g->panels = add(s, "flat_triangle", 3, t, (const int*)linkage->triangles, 0, 1, NULL);
@@ -294,13 +320,9 @@ static void build_hang(ax_form* f)
     sheet_places(f, f->scratch);
     ax_solver* s = ax_solver_make(linkage->hinge_count, (const double(*)[3])f->scratch, f->pool);
     ax_form_groups* g = &f->hang_groups;
-    *g = (ax_form_groups){-1, -1, -1, -1, -1, NULL, NULL};
+    *g = (ax_form_groups){-1, -1, -1, -1, NULL, NULL};
     g->panels = add(s, "rigid_triangle", 3, linkage->triangle_count, (const int*)linkage->triangles, 0, 1, NULL);
-    g->fairness = add(s, "fairness", 4, f->line_count, (const int*)f->lines, 0, hang_fair_weight, NULL);
-    ax_solver_set_soft(s, g->fairness, true);
-    int bend = add(s, "fairness", 3, f->bend_count, (const int*)f->bends, 0, hang_bend_weight, NULL);
-    if (bend >= 0)
-        ax_solver_set_soft(s, bend, true);
+    add_fairness(f, s, 0, hang_fair_weight, hang_bend_weight, hang_wide_weight, 2);
     add_holders(f, s, 0, true, g);
     add_load(f, s);
     f->hang = s;
@@ -625,7 +647,8 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     snapshot before = keep(f);
     ax_form_build(f);
     // The flat state starts from the twist of its factors, so that it does not depend on the way here; the deployed one starts
-    // out of the plane, where it would stay locked, and afresh where panels have folded onto each other: they would not unfold.
+    // out of the plane, where it would stay locked, and afresh where panels have folded onto each other or turned over: they would not
+    // come back.
     ax_form_twist(f);
     if (!ax_form_shares(f))
         ax_solver_reset_multipliers(f->shape);
@@ -633,7 +656,8 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     double lo = INFINITY, hi = -INFINITY;
     for (int h = 0; h < n; ++h)
         lo = fmin(lo, f->deployed[h][2]), hi = fmax(hi, f->deployed[h][2]);
-    bool folded = ax_form_shares(f) && ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0;
+    bool folded =
+        ax_form_shares(f) && (ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0 || ax_form_left_over(f));
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
         ax_form_restart(f, 0.05), fresh = true;
     if (fresh) { // panels that give way before the holes are open settle for a flatter shape, and leave it slowly

@@ -23,7 +23,7 @@ typedef struct ax_holder {
 
 // Groups of the solvers below, -1 where there is none.
 typedef struct ax_form_groups {
-    int panels, mouths, centres, holes, fairness;
+    int panels, mouths, centres, holes;
     int *rim, *held; // per rim part and per constraint
 } ax_form_groups;
 
@@ -38,6 +38,7 @@ struct ax_form {
     int mouth_count, (*mouths)[3]; // hinge, next, previous: the smaller angle of every inner hinge
     int line_count, (*lines)[4];   // four hinges in a row on kagome lines
     int bend_count, (*bends)[3];   // three in a row
+    int wide_count, (*wide)[4];    // every second one of seven in a row
     int hole_count, *holes;        // those with six hinges, by number
 
     // asked
@@ -136,6 +137,8 @@ double ax_form_deployed_error(const ax_form* form);
 double ax_form_simulated_error(const ax_form* form);
 // Pairs of neighbouring panels whose normals oppose each other.
 int ax_form_folds(const ax_form* form, const double (*x)[3], int first[2]); // panels of the first; NULL: not wanted
+// The deployed state is turned over, and what is painted is not: it is left from what was painted before.
+bool ax_form_left_over(const ax_form* form);
 // Mean height of the deployed hinges above the rim's.
 double ax_form_bulge(const ax_form* form);
 double ax_form_sides_mean(const ax_form* form);

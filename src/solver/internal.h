@@ -69,9 +69,10 @@ struct ax_solver {
                    // before the first such
     ax_vec4* dead; // sum of point forces and dead loads, NULL: none
     ax_vec4* row;  // what elements write for the points to sum
-    int row_count, first_load_row;
-    int *incident_start, *incident; // per point: row << 1 | sign
-    tally* tallies;                 // one per task; those of points come last
+    int row_count, first_step_row, first_load_row; // rows before the first of a step are read by measurements only
+    int *incident_start, *incident;                // per point: row << 1 | sign
+    int* step_start;                               // per point: the first incident row of a step
+    tally* tallies;                                // one per task; those of points come last
     int point_tallies;
     ax_panels* panels;
     ax_anderson* anderson;   // NULL: plain iterations
@@ -107,6 +108,12 @@ static inline int task_count(const elements* e)
 static inline bool is_hard(const ax_solver* s, const group* g)
 {
     return s->multipliers && !g->soft && !g->type->eliminated;
+}
+
+// Writes nothing but zeros in a step.
+static inline bool is_silent(const group* g)
+{
+    return g->soft && g->type->vanishes;
 }
 
 static inline int point_task_count(const ax_solver* s)

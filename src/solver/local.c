@@ -250,7 +250,7 @@ static void act_chunk(void* context, int chunk)
 static void run_elements(ax_solver* s)
 {
     for (int k = 0; k < s->group_count; ++k)
-        if (!s->groups[k].type->eliminated) {
+        if (!s->groups[k].type->eliminated && (s->tallying || !is_silent(s->groups + k))) {
             s->active_group = k;
             ax_pool_run(s->pool, project_chunk, s, task_count(&s->groups[k].e));
         }
@@ -293,7 +293,7 @@ static void sum_points(void* context, int task)
         if (s->tallying)
             energy += point_energy(s, v);
         v4 sum = *(const v4*)s->base[v];
-        for (int k = s->incident_start[v]; k < s->incident_start[v + 1]; ++k)
+        for (int k = s->step_start[v]; k < s->incident_start[v + 1]; ++k)
             sum += incident_row(s, s->incident[k]);
         *(v4*)s->x[v] = sum;
     }

@@ -72,9 +72,10 @@ void ax_solver_free(ax_solver* s)
         }
         ax_free(s->loads[k].classes);
     }
-    void* blocks[] = {s->groups,   s->parts,          s->loads,    s->start,  s->point_force, s->stiffness, s->order,
-                      s->position, s->held,           s->x,        s->base,   s->velocity,    s->kept,      s->dead,
-                      s->row,      s->incident_start, s->incident, s->tallies};
+    void* blocks[] = {s->groups,         s->parts,    s->loads,      s->start,  s->point_force,
+                      s->stiffness,      s->order,    s->position,   s->held,   s->x,
+                      s->base,           s->velocity, s->kept,       s->dead,   s->row,
+                      s->incident_start, s->incident, s->step_start, s->tallies};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_sparse_free(&s->held_matrix);
@@ -322,6 +323,7 @@ void ax_solver_set_soft(ax_solver* s, int k, bool soft)
 {
     s->changed = true;
     s->groups[k].soft = soft;
+    s->rows_changed = true;
 }
 
 size_t ax_solver_multiplier_count(const ax_solver* s)
@@ -547,15 +549,16 @@ static void sort_all(ax_solver* s)
         }
 }
 
-// All elements that write rows, constraints first: NULL after the last.
+// All elements that write rows: silent constraints, the others, loads; NULL after the last.
 static elements* writer(ax_solver* s, int k, bool* edges)
 {
     *edges = false;
-    for (int g = 0; g < s->group_count; ++g)
-        if (!s->groups[g].type->eliminated && k-- == 0) {
-            *edges = s->groups[g].type->pattern == AX_ROWS_EDGES;
-            return &s->groups[g].e;
-        }
+    for (int silent = 1; silent >= 0; --silent)
+        for (int g = 0; g < s->group_count; ++g)
+            if (!s->groups[g].type->eliminated && is_silent(s->groups + g) == silent && k-- == 0) {
+                *edges = s->groups[g].type->pattern == AX_ROWS_EDGES;
+                return &s->groups[g].e;
+            }
     for (int f = 0; f < s->load_count; ++f)
         for (int c = 0; s->loads[f].type->follows && c < s->loads[f].class_count; ++c)
             if (k-- == 0)
@@ -568,14 +571,18 @@ static void list_incidence(ax_solver* s)
 {
     elements* e;
     bool edges;
-    int tasks = 0, constraints = 0;
-    for (int k = 0; k < s->group_count; ++k)
+    int tasks = 0, silent = 0, constraints = 0;
+    for (int k = 0; k < s->group_count; ++k) {
+        silent += !s->groups[k].type->eliminated && is_silent(s->groups + k);
         constraints += !s->groups[k].type->eliminated;
-    s->row_count = 0;
+    }
+    s->row_count = s->first_step_row = s->first_load_row = 0;
     for (int k = 0; (e = writer(s, k, &edges)); ++k) {
         e->first_row = s->row_count, e->first_task = tasks;
         s->row_count += e->blocks * AX_W * e->rows_each;
         tasks += task_count(e);
+        if (k + 1 == silent)
+            s->first_step_row = s->row_count;
         if (k + 1 == constraints)
             s->first_load_row = s->row_count;
     }
@@ -584,6 +591,7 @@ static void list_incidence(ax_solver* s)
     ax_free(s->tallies);
     ax_free(s->incident_start);
     ax_free(s->incident);
+    ax_free(s->step_start);
     s->row = ax_alloc_aligned((size_t)s->row_count, sizeof *s->row);
     s->tallies = AX_NEW0(tally, tasks + point_task_count(s));
     s->incident_start = AX_NEW0(int, s->n + 2);
@@ -603,6 +611,12 @@ static void list_incidence(ax_solver* s)
         for (int v = 0; v <= s->n; ++v)
             s->incident_start[v + 1] += s->incident_start[v];
         s->incident = AX_NEW(int, s->incident_start[s->n + 1]);
+    }
+    s->step_start = AX_NEW(int, s->n);
+    for (int v = 0; v < s->n; ++v) {
+        s->step_start[v] = s->incident_start[v];
+        while (s->step_start[v] < s->incident_start[v + 1] && s->incident[s->step_start[v]] >> 1 < s->first_step_row)
+            ++s->step_start[v];
     }
 }
 

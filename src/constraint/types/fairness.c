@@ -30,5 +30,6 @@ const ax_constraint_type ax_constraint_fairness = {
     .most_points = 4,
     .symmetry = AX_SYMMETRY_TRANSLATION | AX_SYMMETRY_ROTATION | AX_SYMMETRY_SCALE,
     .coefficient = coefficient,
+    .vanishes = true,
     .project = project,
 };
