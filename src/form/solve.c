@@ -210,8 +210,13 @@ static void allow_give(ax_form* f, bool allowed)
     ax_free(lanes);
 }
 
-static bool holds_rim(const ax_form* f)
+// A rim that is held may have too much between it. A free one gives way, and a surface that holds every hinge says itself how the
+// sheet bends.
+static bool may_fold(const ax_form* f)
 {
+    for (int k = 0; k < f->held_count; ++k)
+        if (f->held[k].kind == AX_HELD_SURFACE && f->held[k].count == f->lattice.linkage.hinge_count)
+            return false;
     for (int k = 0; k < f->rim_count; ++k)
         if (f->rim[k].kind != AX_RIM_FREE)
             return true;
@@ -246,9 +251,7 @@ static void build_shape(ax_form* f)
         g->holes = add(s, "cyclic_polygon", 6, f->hole_count, loops, n, hole_weight, NULL);
         ax_free(loops);
         ax_solver_set_soft(s, g->holes, true);
-        // A free rim gives way to too much, and nothing folds. Between held ones, a little less than the square: where there is far too
-        // much the sheet settles at 2,500 panels too.
-        if (holds_rim(f))
+        if (may_fold(f)) // a little less than the square: where there is far too much, 2,500 panels settle too
             add_fairness(f, s, n, held_fair_weight, held_bend_weight, wide_weight, 1.5);
         else
             add_fairness(f, s, n, fair_weight, bend_weight, 0, 0);
