@@ -1,4 +1,4 @@
-// Plays a recipe and draws the state after every operator with a note: flat, from above and from the side, a row each.
+// Plays a recipe and draws the state after every operator whose note begins a stage: flat, from above and from the side, a row each.
 // usage: make_figure_4 RECIPE OUT.png
 #include "ax/recipe.h"
 
@@ -112,7 +112,7 @@ static bool draw_stage(void* context, int k, ax_form* form)
     if (k == 0)
         for (int h = 0; h < v.linkage->hinge_count; ++h)
             p->reach = fmax(p->reach, 1.3 * sqrt(v.sheet[h][0] * v.sheet[h][0] + v.sheet[h][1] * v.sheet[h][1]));
-    if (note && p->rows < MOST_ROWS)
+    if (note && strncmp(note, "Stage ", 6) == 0 && p->rows < MOST_ROWS)
         draw_row(p, &v, note);
     json_decref(operator);
     return true;
