@@ -1117,8 +1117,8 @@ static void results_do_not_depend_on_resolution(void** state)
         "{\"op\": \"paint_curvature\", \"points\": [[0, 0]], \"radius\": 0.8, \"curvature\": 0.5}, {\"op\": "
         "\"rim_circle\", "
         "\"radius\": 1.3}, {\"op\": \"inflation\"}",
-        "{\"op\": \"formula\", \"formula\": \"1.25 + 0.4*exp(-((x-0.2)^2+y^2)/0.3)\"}, {\"op\": \"rim_circle\", "
-        "\"radius\": 1.15}, {\"op\": \"gravity\"}",
+        ("{\"op\": \"formula\", \"formula\": \"1.25 + 0.4*exp(-((x-0.2)^2+y^2)/0.3)\"}, {\"op\": \"rim_circle\", "
+         "\"radius\": 1.15}, {\"op\": \"gravity\"}"),
     };
     size_t count = getenv("AX_QUICK") ? 0 : sizeof recipes / sizeof *recipes;
     for (size_t k = 0; k < count; ++k) {
