@@ -409,7 +409,7 @@ export const scenarios = {
         const shells = {
             "a load": [bowl, ["scale", "mouth", "curvature", "rim", "match", "force"]],
             "panels that overlap": [[small, { op: "fill", value: 2 }, { op: "paint", points: [[1, 0], [2, 1]], value: 1, radius: 1 }, { op: "inflation" }], ["mouth", "overlap"]],
-            "panels folded together": [[small, { op: "fill", value: 2 }, { op: "rim_circle", radius: 3 }, { op: "inflation" }], ["overlap", "force"]],
+            "panels folded together": [[small, { op: "fill", value: 2 }, { op: "rim_circle", radius: 3 }, { op: "inflation" }], ["overlap"]],
             "a site that is near": [[...bowl, { op: "underlay", name: "ground", file: "ground.obj", clearance: 1 }], ["overlap"]],
         };
         for (const [name, [operators, wanted]] of Object.entries(shells))
