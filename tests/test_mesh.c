@@ -439,14 +439,6 @@ static double sharpest(const ax_mesh* mesh)
     return acos(least);
 }
 
-static double total_area(const ax_mesh* mesh)
-{
-    double sum = 0;
-    for (int f = 0; f < mesh->face_count; ++f)
-        sum += ax_face_area(mesh, f);
-    return sum;
-}
-
 static void a_flat_square_keeps_its_corners_and_its_area(void** state)
 {
     (void)state;
@@ -456,7 +448,7 @@ static void a_flat_square_keeps_its_corners_and_its_area(void** state)
     assert_int_equal(done.rounds, 2);
     assert_int_equal(square.face_count, 2 * 3 * 3 * 16);
     assert_true(square.vertex_count > vertices);
-    assert_near(total_area(&square), 4, 1e-12);
+    assert_near(ax_mesh_area(&square), 4, 1e-12);
     for (int k = 0; k < square.vertex_count; ++k)
         assert_near(square.positions[k][2], 0, 0);
     assert_int_equal(ax_mesh_refine(&square, 0.2).rounds, 0); // fine enough
@@ -473,7 +465,7 @@ static void refining_rounds_a_dome_and_moves_it_little(void** state)
         double bend = sharpest(&dome), width = 1.0 / (k ? 8 : 4);
         move[k] = 0;
         for (int round = 0; round < 3; ++round) {
-            double facet = sqrt(4 * total_area(&dome) / (sqrt(3) * dome.face_count));
+            double facet = ax_mean_facet(&dome);
             ax_refinement done = ax_mesh_refine(&dome, 0.99 * facet);
             assert_int_equal(done.rounds, 1);
             move[k] += done.largest_move;

@@ -244,26 +244,18 @@ static ax_mesh tent(int between, bool on_rim)
     return mesh;
 }
 
-static double area(const ax_mesh* mesh)
-{
-    double sum = 0;
-    for (int f = 0; f < mesh->face_count; ++f)
-        sum += ax_face_area(mesh, f);
-    return sum;
-}
-
 static void heaps_of_faces_without_area_dissolve(void** state)
 {
     (void)state;
     for (int on_rim = 0; on_rim < 2; ++on_rim)
         for (int between = 0; between < 20; ++between) {
             ax_mesh mesh = tent(between, on_rim);
-            double expected = area(&mesh);
+            double expected = ax_mesh_area(&mesh);
             ax_mesh_repairs repairs;
             ax_error error = {0};
             if (ax_mesh_make_surface(&mesh, &repairs, &error) != AX_OK)
                 fail_msg("%d between: %s", between, error.message);
-            assert_near(area(&mesh), expected, 1e-12);
+            assert_near(ax_mesh_area(&mesh), expected, 1e-12);
             assert_int_equal(mesh.vertex_count, 5 + between);
             assert_true(repairs.degenerate_faces >= between);
             for (int f = 0; f < mesh.face_count; ++f)

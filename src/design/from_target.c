@@ -225,11 +225,8 @@ static ax_status check_options(const ax_design_options* o, ax_error* error)
 
 ax_refinement ax_design_refine_target(ax_mesh* target, const ax_design_options* options)
 {
-    double area = 0;
-    for (int f = 0; f < target->face_count; ++f)
-        area += ax_face_area(target, f);
     // open, a panel and its share of the holes take sqrt(3) L^2
-    double edge = options->edge > 0 ? options->edge : sqrt(area / (sqrt(3) * options->triangles));
+    double edge = options->edge > 0 ? options->edge : sqrt(ax_mesh_area(target) / (sqrt(3) * options->triangles));
     return ax_mesh_refine(target, edge / 2);
 }
 

@@ -74,11 +74,7 @@ static void keep_solution(ax_design* design, const ax_deploy_model* model, const
 // them: the most common reason why a sound design does not settle.
 static bool has_wide_facets(const ax_design* design)
 {
-    double area = 0;
-    for (int f = 0; f < design->target.face_count; ++f)
-        area += ax_face_area(&design->target, f);
-    double facet = design->target.face_count ? sqrt(4 * area / (sqrt(3) * design->target.face_count)) : 0;
-    return facet > design->report.edge_mean;
+    return ax_mean_facet(&design->target) > design->report.edge_mean;
 }
 
 ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_progress* progress, ax_error* error)

@@ -31,6 +31,19 @@ double ax_face_area(const ax_mesh* mesh, int face)
     return 0.5 * ax_norm3(a);
 }
 
+double ax_mesh_area(const ax_mesh* mesh)
+{
+    double area = 0;
+    for (int f = 0; f < mesh->face_count; ++f)
+        area += ax_face_area(mesh, f);
+    return area;
+}
+
+double ax_mean_facet(const ax_mesh* mesh)
+{
+    return mesh->face_count ? sqrt(4 * ax_mesh_area(mesh) / (sqrt(3) * mesh->face_count)) : 0;
+}
+
 void ax_face_normal(const ax_mesh* mesh, int face, double normal[3])
 {
     area_vector(mesh, face, normal);

@@ -5,6 +5,9 @@
 #include "linalg/sparse.h"
 
 double ax_face_area(const ax_mesh* mesh, int face);
+double ax_mesh_area(const ax_mesh* mesh);
+// Side of the equilateral triangle of mean area; 0 without faces.
+double ax_mean_facet(const ax_mesh* mesh);
 void ax_face_normal(const ax_mesh* mesh, int face, double normal[3]); // unit; zero for a degenerate face
 void ax_bounds(const ax_mesh* mesh, double lo[3], double hi[3]);
 double ax_diagonal(const ax_mesh* mesh);

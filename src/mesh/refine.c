@@ -110,15 +110,6 @@ static void subdivide(ax_mesh* mesh, unsigned char** corner)
     *mesh = fine;
 }
 
-// Side of the equilateral triangle of mean area.
-static double facet_of(const ax_mesh* mesh)
-{
-    double area = 0;
-    for (int f = 0; f < mesh->face_count; ++f)
-        area += ax_face_area(mesh, f);
-    return sqrt(4 * area / (sqrt(3) * mesh->face_count));
-}
-
 ax_refinement ax_mesh_refine(ax_mesh* mesh, double facet)
 {
     enum { MOST_FACES = 2000000 };
@@ -127,7 +118,7 @@ ax_refinement ax_mesh_refine(ax_mesh* mesh, double facet)
     int old = mesh->vertex_count;
     double(*before)[3] = ax_copy(mesh->positions, (size_t)old, sizeof *before);
     unsigned char* corner = corners_of_rim(mesh);
-    for (; facet_of(mesh) > facet && 4 * mesh->face_count <= MOST_FACES; ++done.rounds)
+    for (; ax_mean_facet(mesh) > facet && 4 * mesh->face_count <= MOST_FACES; ++done.rounds)
         subdivide(mesh, &corner);
     ax_closest* tree = done.rounds ? ax_closest_make(mesh) : NULL;
     for (int v = 0; v < old && tree; ++v)
