@@ -405,6 +405,18 @@ class CutFiles(CommandCase):
                 for ours, theirs in zip((x, y, r), box):
                     self.assertAlmostEqual(ours, theirs, delta=0.01)
 
+    def test_what_is_written_is_said_and_the_overview_is_no_sheet(self):
+        before = set(self.files())
+        out = self.folder / "c.r12.dxf"
+        words = self.succeed("export", self.document, "-o", out, "--sheet", "2000x2000")
+        first, last, overview = re.search(r"Wrote (\S+) to (\S+), and (\S+), an overview that is not to be cut", words).groups()
+        sheets = int(re.search(r"-(\d+)\.r12\.dxf$", last)[1])
+        self.assertEqual((first, overview), (str(self.folder / "c-1.r12.dxf"), str(out)))
+        self.assertEqual(set(self.files()) - before, {"c.r12.dxf", *(f"c-{k}.r12.dxf" for k in range(1, sheets + 1))})
+        for path in (first, last):
+            self.assertTrue(self.read_dxf(path).modelspace().query('*[layer=="CUT"]'), path)
+        self.assertIn(f"Wrote {self.folder / 'c.pdf'}\n", self.succeed("export", self.document, "-o", self.folder / "c.pdf", "--sheet", "2000x2000"))
+
     def test_sheets_bear_the_day_of_the_recipe(self):
         """That of the last step, of a finished design that of the file; never the day of export."""
         self.make("spherical_cap.obj")

@@ -104,6 +104,19 @@ static ax_status export_recipe(const arguments* a, const char* path, ax_error* e
     return status;
 }
 
+// Whoever cuts must not take the overview for a sheet.
+static void print_written(const char* path, const ax_cut_plan* plan)
+{
+    char* first = ax_export_sheet_path(path, plan, 0);
+    char* last = first ? ax_export_sheet_path(path, plan, plan->sheet_count - 1) : NULL;
+    if (first)
+        printf("Wrote %s to %s, and %s, an overview that is not to be cut\n", first, last, path);
+    else
+        printf("Wrote %s\n", path);
+    ax_free(first);
+    ax_free(last);
+}
+
 static ax_status export_design(const arguments* a, int count, const char* const* paths, ax_error* error)
 {
     ax_design design = {0};
@@ -125,7 +138,7 @@ static ax_status export_design(const arguments* a, int count, const char* const*
         progress_end();
     }
     for (int k = 0; k < count && status == AX_OK; ++k)
-        printf("Wrote %s\n", paths[k]);
+        print_written(paths[k], &plan);
     if (status == AX_OK && plan.sheet_count)
         fabricate_print(&plan, stdout);
     ax_cut_plan_free(&plan);

@@ -40,6 +40,10 @@ const ax_export_type* const* ax_export_types(int* count);
 // AX_BAD_INPUT when the state is missing (not simulated); AX_FAILED when the disk does not take it.
 ax_status ax_export(const ax_design* design, const char* path, const ax_export_options* options, ax_error* error);
 
+// Where sheet 0, 1 ... of a plan was written when the overview went to `path`; NULL if `path` holds everything there is. The caller frees
+// it.
+char* ax_export_sheet_path(const char* path, const ax_cut_plan* plan, int sheet);
+
 // The same for several files, in several formats if wanted: one plan is made for all cut files, and they are written side by side.
 // Either all files are there in the end or none has changed, but for a disk that fails while they are renamed.
 ax_status ax_export_files(const ax_design* design, int count, const char* const* paths,

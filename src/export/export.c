@@ -110,16 +110,22 @@ static bool has_sheet_files(const job* j)
 }
 
 // "dome.svg" and sheet 2 to "dome-3.svg"; the overview keeps the name.
-static char* piece_path(const piece* p)
+static char* sheet_path(const job* j, int sheet)
 {
-    const char* path = p->job->path;
-    size_t length = strlen(path), stem = length - strlen(p->job->type->ending);
+    size_t length = strlen(j->path), stem = length - strlen(j->type->ending);
     char* name = ax_alloc(length + 16, 1);
-    if (has_sheet_files(p->job) && p->sheet < p->job->plan->sheet_count)
-        snprintf(name, length + 16, "%.*s-%d%s", (int)stem, path, p->sheet + 1, path + stem);
+    if (has_sheet_files(j) && sheet < j->plan->sheet_count)
+        snprintf(name, length + 16, "%.*s-%d%s", (int)stem, j->path, sheet + 1, j->path + stem);
     else
-        snprintf(name, length + 16, "%s", path);
+        snprintf(name, length + 16, "%s", j->path);
     return name;
+}
+
+char* ax_export_sheet_path(const char* path, const ax_cut_plan* plan, int sheet)
+{
+    const ax_export_type* type = find_type(path);
+    const job j = {.path = path, .type = type, .plan = type && type->write_sheet ? plan : NULL};
+    return has_sheet_files(&j) ? sheet_path(&j, sheet) : NULL;
 }
 
 // Files of all sheets come first: they take longest.
@@ -161,7 +167,7 @@ static ax_status write_jobs(int job_count, const job* jobs, ax_error* error)
     ax_status status = AX_OK;
     q.pieces = make_pieces(job_count, jobs, &q.count);
     for (; begun < q.count && status == AX_OK; ++begun) {
-        char* name = piece_path(&q.pieces[begun]);
+        char* name = sheet_path(q.pieces[begun].job, q.pieces[begun].sheet);
         status = ax_file_begin_path(&q.pieces[begun].file, name, error);
         ax_free(name);
         if (status != AX_OK)
