@@ -1,6 +1,7 @@
 #include "fabricate/way.h"
 
 #include "base/vec.h"
+#include "design/motion.h"
 #include "solver/solver.h"
 
 #include <string.h>
@@ -20,13 +21,10 @@ struct ax_way {
     double at;
     // makes panels rigid
     ax_solver* rigid;
-    int middles;         // group
-    double (*target)[3]; // of the panels' middles
-    // the simulation; NULL: panels go straight
-    ax_solver* motion;
-    int supports; // group
-    int held_count, *held;
-    double (*simulated)[3];
+    int middles;              // group
+    double (*target)[3];      // of the panels' middles
+    ax_design_motion* motion; // NULL: panels go straight
+    double (*simulated)[3];   // by it
 };
 
 // The motion of the plane into space that brings the flat state nearest to the open one: x = centre + u p0 + v p1 (the polar factor
@@ -102,84 +100,6 @@ static bool settle(ax_way* w, const ax_progress* progress)
     return end.end != AX_SETTLE_CANCELLED;
 }
 
-// --- the simulation
-
-// Time steps from flat to rest, and iterations of each. A point of the sheet gathers the way to its place over some ten steps whatever
-// the mesh: the load on it falls with the square root of the number of panels, its way over an edge grows with that. With these the
-// last state is within 0.05 edges of the exact equilibrium, where that is the only one.
-enum { STEPS = 48, INNER = 20 };
-static const double arrival = 0.8;            // of the time, when supports are where they shall be
-static const double strain = 0.1;             // by the load, of panels without multipliers, see ax_solver_load_ratio
-static const double mass = 40, damping = 0.5; // of the whole; velocity kept a step
-
-// Panels, and under pressure holes and openings too, as loops.
-static void add_load(ax_way* w)
-{
-    const ax_design* d = w->design;
-    const ax_linkage* l = &d->linkage;
-    bool inflated = d->load.kind == AX_LOAD_INFLATION;
-    int holes = inflated ? l->hole_count : 0, openings = inflated ? l->opening_count : 0, count = 0, loop = 0;
-    int* start = AX_NEW0(int, l->triangle_count + holes + openings + 1);
-    int* points = AX_NEW(int, 3 * l->triangle_count + l->hole_start[holes] + l->opening_start[openings]);
-    for (int t = 0; t < l->triangle_count; ++t, start[++loop] = count)
-        for (int k = 0; k < 3; ++k)
-            points[count++] = l->triangles[t][k];
-    for (int k = 0; k < holes; ++k, start[++loop] = count)
-        for (int i = l->hole_start[k]; i < l->hole_start[k + 1]; ++i)
-            points[count++] = l->hole_hinges[i];
-    for (int k = 0; k < openings; ++k, start[++loop] = count)
-        for (int i = l->opening_start[k]; i < l->opening_start[k + 1]; ++i)
-            points[count++] = l->opening_hinges[i];
-    const ax_load_type* type = ax_load_find(inflated ? "pressure" : "gravity");
-    int load = ax_solver_add_load(w->motion, type, loop, start, points);
-    for (int k = 0; k < type->parameter_count && !inflated; ++k)
-        if (strcmp(type->parameters[k].name, "direction") == 0)
-            for (int c = 0; c < 3; ++c)
-                ax_solver_set_load_value(w->motion, load, type->parameters[k].offset + c, d->load.direction[c]);
-    ax_free(start);
-    ax_free(points);
-}
-
-static void make_motion(ax_way* w, ax_pool* pool)
-{
-    const ax_design* d = w->design;
-    const ax_linkage* l = &d->linkage;
-    w->held = AX_NEW(int, l->hinge_count);
-    for (int h = 0; h < l->hinge_count; ++h)
-        if (d->supports[h])
-            w->held[w->held_count++] = h;
-    w->motion = ax_solver_make(l->hinge_count, (const double(*)[3])w->flat, pool);
-    int panels = ax_solver_add(w->motion, ax_constraint_find("rigid_triangle"), 3, l->triangle_count,
-                               (const int*)l->triangles, 1, NULL);
-    w->supports = ax_solver_add(w->motion, ax_constraint_find("fixed"), 1, w->held_count, w->held, 1, NULL);
-    add_load(w);
-    ax_solver_scale_loads(w->motion, strain / ax_solver_load_ratio(w->motion, panels));
-    ax_solver_set_dynamics(w->motion,
-                           &(ax_dynamics){.mass = mass / l->triangle_count, .time_step = 1, .damping = damping});
-    ax_solver_use_multipliers(w->motion, true);
-    ax_solver_cap_multipliers(w->motion, 2 * d->report.edge_mean);
-    w->simulated = ax_alloc((size_t)l->hinge_count, sizeof *w->simulated);
-}
-
-// The state at time t; false if cancelled.
-static bool simulate(ax_way* w, double t, const ax_progress* progress)
-{
-    int steps = (int)fmax(1, lround((t - w->at) * STEPS));
-    for (int i = 1; i <= steps; ++i) {
-        double time = fmin(1, (w->at + (t - w->at) * i / steps) / arrival), share = time * time * (3 - 2 * time);
-        if (!ax_progress_report(progress, "Simulating the way", 0.7 * i / steps, NAN))
-            return false;
-        for (int k = 0; k < w->held_count; ++k)
-            for (int c = 0; c < 3; ++c) {
-                double from = w->flat[w->held[k]][c], to = w->open[w->held[k]][c];
-                ax_solver_set(w->motion, w->supports, k, c, from + share * (to - from));
-            }
-        ax_solver_step(w->motion, INNER);
-    }
-    ax_solver_get_places(w->motion, w->simulated);
-    return true;
-}
-
 // --- the way
 
 ax_way* ax_way_make(const ax_design* design, ax_pool* pool)
@@ -193,8 +113,10 @@ ax_way* ax_way_make(const ax_design* design, ax_pool* pool)
     align(design, (const double(*)[3])w->open, w->flat);
     w->places = ax_copy(w->flat, hinges, sizeof *w->places);
     make_rigid(w, pool);
-    if (design->simulated)
-        make_motion(w, pool);
+    if (design->simulated) {
+        w->motion = ax_design_motion_make(design, (const double(*)[3])w->flat, pool);
+        w->simulated = ax_alloc(hinges, sizeof *w->simulated);
+    }
     return w;
 }
 
@@ -203,12 +125,11 @@ void ax_way_free(ax_way* w)
     if (!w)
         return;
     ax_solver_free(w->rigid);
-    ax_solver_free(w->motion);
+    ax_design_motion_free(w->motion);
     ax_free(w->flat);
     ax_free(w->open);
     ax_free(w->places);
     ax_free(w->target);
-    ax_free(w->held);
     ax_free(w->simulated);
     ax_free(w);
 }
@@ -235,7 +156,8 @@ bool ax_way_at(ax_way* w, double t, const ax_progress* progress, ax_way_state* o
     int hinges = w->design->linkage.hinge_count;
     *out = (ax_way_state){.places = (const double(*)[3])w->places};
     if (w->motion) {
-        if (!simulate(w, t, progress))
+        ax_progress_part slot;
+        if (!ax_design_motion_to(w->motion, t, ax_progress_within(&slot, progress, 0, 0.7), w->simulated))
             return false;
         memcpy(w->places, w->simulated, (size_t)hinges * sizeof *w->places);
         find_middles(&w->design->linkage, (const double(*)[3])w->places, w->target);
