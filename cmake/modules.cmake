@@ -9,6 +9,7 @@ function(ax_module name)
     target_link_libraries(ax_${name} PUBLIC ax_${module})
   endforeach()
   target_link_libraries(ax_${name} PUBLIC ${M_LIBRARIES})
+  set_property(GLOBAL APPEND PROPERTY AX_OBJECTS $<TARGET_OBJECTS:ax_${name}>)
 endfunction()
 
 # ax_registry(VARIABLE FOLDER TYPE PREFIX): writes a table of every `const TYPE PREFIX<file name>` found in FOLDER, sorted, so

@@ -30,7 +30,7 @@ typedef struct arguments {
 
 static void defaults(void* given)
 {
-    ((arguments*)given)->from = AX_EXAMPLES_PATH;
+    ((arguments*)given)->from = ax_examples_folder();
 }
 
 static const command_option options[] = {

@@ -67,5 +67,8 @@ const char* ax_nearest_word(const char* word, int count, const char* const* cand
 // The day of a time (seconds since 1970) in UTC, "2026-05-31"; empty if it is not finite or not within the years 1 to 9999.
 void ax_day_words(double time, char words[16]);
 
+// The folder of the example recipes, as long as the program; empty if they are not there.
+const char* ax_examples_folder(void);
+
 // Version of the library, "MAJOR.MINOR.PATCH".
 const char* ax_version(void);

@@ -1,4 +1,5 @@
 #include "base/clock.h"
+#include "base/own.h"
 #include "mesh/stream.h"
 
 #include <assert.h>
@@ -42,20 +43,6 @@ static ax_status check_file(const char* path, ax_error* error)
     return AX_OK;
 }
 
-// The parser lies beside the running program, else where the build put it.
-static void find_parser(char* out, size_t size)
-{
-    ssize_t length = readlink("/proc/self/exe", out, size - sizeof program);
-    while (length > 0 && out[length - 1] != '/')
-        --length;
-    if (length > 0) {
-        memcpy(out + length, program, sizeof program);
-        if (access(out, X_OK) == 0)
-            return;
-    }
-    snprintf(out, size, "%s", AX_READER_PATH);
-}
-
 typedef struct parser {
     pid_t process;
     int output, complaints; // our ends of its standard output and error
@@ -67,8 +54,9 @@ typedef struct parser {
 
 static ax_status start(parser* p, const char* path, const ax_read_options* options, ax_error* error)
 {
-    char executable[4096], bytes[32], seconds[32];
-    find_parser(executable, sizeof executable);
+    char executable[AX_OWN_PATH], bytes[32], seconds[32];
+    if (!ax_own_path(program, AX_READER_BUILT, AX_READER_INSTALLED, executable))
+        strcpy(executable, program); // in PATH, perhaps
     snprintf(bytes, sizeof bytes, "%zu", options->bytes);
     snprintf(seconds, sizeof seconds, "%.0f", options->seconds + 1);
     char* arguments[] = {executable, bytes, seconds, (char*)ax_up_words[options->up], (char*)path, NULL};
@@ -89,7 +77,7 @@ static ax_status start(parser* p, const char* path, const ax_read_options* optio
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, output[1], STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, complaints[1], STDERR_FILENO);
-    int reason = posix_spawn(&p->process, executable, &actions, NULL, arguments, environ);
+    int reason = posix_spawnp(&p->process, executable, &actions, NULL, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     close(output[1]);
     close(complaints[1]);

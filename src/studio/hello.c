@@ -33,7 +33,7 @@ static char* path_of(const char* folder, const char* name, const char* ends)
 
 char* hello_example_path(const char* name)
 {
-    return path_of(AX_EXAMPLES_PATH, name, ending);
+    return path_of(ax_examples_folder(), name, ending);
 }
 
 char* hello_example_document(const char* name)
@@ -69,7 +69,7 @@ static json_t* example_list(void)
 {
     json_t* list = json_array();
     struct dirent** entries;
-    int count = scandir(AX_EXAMPLES_PATH, &entries, is_recipe, alphasort);
+    int count = scandir(ax_examples_folder(), &entries, is_recipe, alphasort);
     for (int k = 0; k < count; ++k) {
         entries[k]->d_name[strlen(entries[k]->d_name) - strlen(ending)] = 0;
         json_array_append_new(list, example(entries[k]->d_name));
