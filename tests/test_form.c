@@ -278,6 +278,55 @@ static void a_cancelled_settle_changes_nothing(void** state)
 }
 
 // Every kind of constraint is missed before it is asked and kept after.
+static double height_of(int count, const double (*places)[3])
+{
+    double lo = INFINITY, hi = -INFINITY;
+    for (int h = 0; h < count; ++h)
+        lo = fmin(lo, places[h][2]), hi = fmax(hi, places[h][2]);
+    return hi - lo;
+}
+
+static void a_loaded_form_deploys_in_time(void** state)
+{
+    (void)state;
+    ax_form* form = disk(600, 1.2);
+    paint(form, sphere);
+    slide_on_circle(form, 1.1);
+    set_dynamics(form, AX_DYNAMICS_EXPAND, 3);
+    assert_null(ax_form_motion_make(form));
+    set_dynamics(form, AX_DYNAMICS_INFLATION, 3);
+    settle(form);
+    ax_form_view view = ax_form_look(form);
+    int n = view.linkage->hinge_count;
+    double whole = height_of(n, view.simulated), before = 0, furthest = 0;
+    ax_form_motion* motion = ax_form_motion_make(form);
+    for (int k = 0; k <= 48; ++k) {
+        const double(*places)[3] = ax_form_motion_to(motion, k / 48.0, NULL);
+        double height = height_of(n, places);
+        if (k == 0) {
+            assert_at_most(height, 1e-9);
+            for (int t = 0; t < view.linkage->triangle_count; ++t) { // the sheet as it lies flat
+                const int* h = view.linkage->triangles[t];
+                assert_near(ax_distance3(places[h[0]], places[h[1]]), ax_distance2(view.flat[h[0]], view.flat[h[1]]),
+                            1e-9);
+            }
+        }
+        assert_at_most(fabs(height - before), 0.1 * whole); // no jumps
+        before = height;
+        for (int h = 0; h < n && k == 48; ++h)
+            furthest = fmax(furthest, ax_distance3(places[h], view.simulated[h]));
+    }
+    assert_at_most(furthest, 0.5 * view.spacing);
+    ax_form_motion_free(motion);
+
+    motion = ax_form_motion_make(form);
+    int reports = 3;
+    const ax_progress progress = {.report = stop, .context = &reports};
+    assert_null(ax_form_motion_to(motion, 1, &progress));
+    ax_form_motion_free(motion);
+    ax_form_free(form);
+}
+
 static void constraints_hold(void** state)
 {
     (void)state;
@@ -487,6 +536,7 @@ int main(void)
         cmocka_unit_test(stages_of_figure_4),
         cmocka_unit_test(stored_forms_go_on_with_the_same_bits),
         cmocka_unit_test(a_cancelled_settle_changes_nothing),
+        cmocka_unit_test(a_loaded_form_deploys_in_time),
         cmocka_unit_test(constraints_hold),
         cmocka_unit_test(shapes_do_not_depend_on_resolution),
         cmocka_unit_test(scale_factors_are_judged_away_from_the_rim),

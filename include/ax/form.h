@@ -144,6 +144,15 @@ void ax_form_use_threads(ax_form* form, int threads);
 // the form as it was before the call, and so does AX_CANNOT_REALISE: a load on a form that nothing holds. What could not be met is in the
 // report; the return is AX_OK all the same.
 ax_status ax_form_settle(ax_form* form, int iterations, const ax_progress* progress, ax_error* error);
+// The deployment as time goes by, of a form under load: the sheet lies flat where it opens; its supports go to their places while the load
+// opens the holes, by implicit time steps of the projective solver. Panels have the sizes that they have, and are not quite rigid on the
+// way; there is no contact. NULL of a form without a simulated state. Keeps nothing of the form.
+typedef struct ax_form_motion ax_form_motion;
+ax_form_motion* ax_form_motion_make(ax_form* form);
+void ax_form_motion_free(ax_form_motion* motion);
+// Goes on to time `t`, 0 flat, 1 at rest, and gives the hinges' places, borrowed until the next call; NULL if cancelled.
+const double (*ax_form_motion_to(ax_form_motion* motion, double t, const ax_progress* progress))[3];
+
 // Start of the deployed states: `height` out of plane (over the sheet's radius), a bowl or dome; forgets multipliers.
 void ax_form_restart(ax_form* form, double height);
 

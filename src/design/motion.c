@@ -22,6 +22,34 @@ struct ax_design_motion {
     double at;
 };
 
+// x = centre + u p0 + v p1, by the polar factor of the 3 x 2 correlation.
+void ax_design_lay_flat(const ax_design* d, const double (*open)[3], double (*out)[3])
+{
+    int n = d->linkage.hinge_count;
+    double flat[2] = {0}, centre[3] = {0}, m[2][3] = {{0}}, u[2][3];
+    for (int h = 0; h < n; ++h)
+        for (int c = 0; c < 3; ++c) {
+            centre[c] += open[h][c] / n;
+            if (c < 2)
+                flat[c] += d->flat[h][c] / n;
+        }
+    for (int h = 0; h < n; ++h)
+        for (int k = 0; k < 2; ++k)
+            for (int c = 0; c < 3; ++c)
+                m[k][c] += (d->flat[h][k] - flat[k]) * (open[h][c] - centre[c]);
+    // (M'M)^(-1/2) of a 2 x 2 matrix: with root = sqrt(det), trace' = sqrt(trace + 2 root) its root is (M'M + root I) / trace'
+    double a = ax_dot3(m[0], m[0]), b = ax_dot3(m[0], m[1]), c = ax_dot3(m[1], m[1]);
+    double root = sqrt(fmax(0, a * c - b * b)), trace = sqrt(a + c + 2 * root);
+    double p = (a + root) / trace, q = b / trace, r = (c + root) / trace, det = p * r - q * q;
+    for (int k = 0; k < 3; ++k) {
+        u[0][k] = (r * m[0][k] - q * m[1][k]) / det;
+        u[1][k] = (p * m[1][k] - q * m[0][k]) / det;
+    }
+    for (int h = 0; h < n; ++h)
+        for (int k = 0; k < 3; ++k)
+            out[h][k] = centre[k] + (d->flat[h][0] - flat[0]) * u[0][k] + (d->flat[h][1] - flat[1]) * u[1][k];
+}
+
 // Panels, and under pressure holes and openings too, as loops.
 static void add_load(ax_design_motion* m)
 {

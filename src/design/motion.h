@@ -8,6 +8,9 @@
 
 typedef struct ax_design_motion ax_design_motion;
 
+// The flat hinges in space, moved rigidly to where they are nearest to those of an open state.
+void ax_design_lay_flat(const ax_design* design, const double (*open)[3], double (*out)[3]);
+
 // Of a design with a simulated state, under its load and with its supports. `flat`: where its hinges lie at the beginning. `design` and
 // `pool` are borrowed.
 ax_design_motion* ax_design_motion_make(const ax_design* design, const double (*flat)[3], ax_pool* pool);

@@ -46,6 +46,35 @@ static ax_status settle(desk* d, const job* j, json_t** result, ax_error* error)
 
 // ---- from flat to deployed ----------------------------------------------------------------------------------------------------
 
+// One frame of the motion; false when nobody waits for it any more.
+static bool send_motion(desk* d, const job* j, int index, int of, double share, int hinges, const double (*places)[3])
+{
+    board b = {.topology = d->board.topology};
+    const int place[2] = {index, of};
+    board_put_ints(&b, SECTION_PLACE, 2, place);
+    board_put_numbers(&b, SECTION_SHARE, 1, &share, 1, NULL);
+    board_put_numbers(&b, SECTION_DEPLOYED, 3 * hinges, *places, 3, d->frame.origin);
+    size_t size;
+    unsigned char* block = board_frame(&b, (frame_header){.kind = FRAME_MOTION, .re = (unsigned)j->message.id}, 0,
+                                       hub_before(d->hub), &size);
+    board_free(&b);
+    return hub_send(d->hub, j->client, block, size, &d->cancel);
+}
+
+// Under load: frames evenly in time, each sent when it is there.
+static ax_status move_under_load(desk* d, const job* j, ax_form_motion* m, int hinges, int frames, ax_error* error)
+{
+    const ax_progress progress = desk_progress(d);
+    for (int k = 0; k < frames; ++k) {
+        ax_progress_part part;
+        double from = k ? (k - 1.0) / (frames - 1) : 0, to = k / (frames - 1.0);
+        const double(*places)[3] = ax_form_motion_to(m, to, ax_progress_within(&part, &progress, from, to));
+        if (!places || !send_motion(d, j, k, frames, to, hinges, places))
+            return ax_fail(error, AX_CANCELLED, "Cancelled.");
+    }
+    return AX_OK;
+}
+
 // States that the solver went through, thinned so that there are at most twice as many as wanted.
 typedef struct track {
     int hinges, wanted, count, stride, updates;
@@ -78,42 +107,18 @@ static void track_keep(track* t, const double (*places)[3])
     t->places[t->count++] = ax_copy(places, (size_t)t->hinges, sizeof *places);
 }
 
-// One frame of the motion; false when nobody waits for it any more.
-static bool send_motion(desk* d, const job* j, const track* t, int index, int of, int k)
-{
-    board b = {.topology = d->board.topology};
-    const int place[2] = {index, of};
-    const double share = t->travelled > 0 ? t->way[k] / t->travelled : 1;
-    board_put_ints(&b, SECTION_PLACE, 2, place);
-    board_put_numbers(&b, SECTION_SHARE, 1, &share, 1, NULL);
-    board_put_numbers(&b, SECTION_DEPLOYED, 3 * t->hinges, *t->places[k], 3, d->frame.origin);
-    size_t size;
-    unsigned char* block = board_frame(&b, (frame_header){.kind = FRAME_MOTION, .re = (unsigned)j->message.id}, 0,
-                                       hub_before(d->hub), &size);
-    board_free(&b);
-    return hub_send(d->hub, j->client, block, size, &d->cancel);
-}
-
 enum { MOTION_UPDATES = 2000 };
 static const double motion_rest = 1e-4; // of the spacing, mean move per iteration
 
-// The solver's way from the flat sheet to rest, with the sizes that the panels have.
-static ax_status run_motion(desk* d, ax_form* form, track* t, const char** state, ax_error* error)
+// Without load: the solver's way from the flat sheet to rest.
+static ax_status run_free(desk* d, ax_form* form, track* t, ax_error* error)
 {
     const ax_progress progress = desk_progress(d);
-    ax_form_dynamics dynamics = *ax_form_get_dynamics(form);
-    if (dynamics.kind != AX_DYNAMICS_EXPAND)
-        dynamics.adapt = false;
-    if (dynamics.kind == AX_DYNAMICS_NONE)
-        return ax_fail(error, AX_USAGE,
-                       "motion: nothing deploys the sheet yet. Apply gravity, inflation or expand first.");
-    ax_form_set_dynamics(form, &dynamics);
     ax_form_restart(form, 0.02);
     for (int k = 0; k < MOTION_UPDATES; ++k) {
         ax_form_view v = ax_form_look(form);
         double before = t->travelled;
-        *state = v.simulated ? "simulated" : "deployed";
-        track_keep(t, v.simulated ? v.simulated : v.deployed);
+        track_keep(t, v.deployed);
         double move = (t->travelled - before) / v.spacing;
         if (k > 10 && move < motion_rest)
             break;
@@ -124,41 +129,57 @@ static ax_status run_motion(desk* d, ax_form* form, track* t, const char** state
     return AX_OK;
 }
 
-static ax_status motion(desk* d, const job* j, json_t** result, ax_error* error)
+// Frames are sent when the whole way is known: they are spread over it.
+static ax_status move_free(desk* d, const job* j, int hinges, int wanted, int* frames, ax_error* error)
 {
-    int wanted = 60;
-    ax_status status = message_unpack(&j->message, error, "{s?i}", "frames", &wanted);
-    if (status == AX_OK && (wanted < 2 || wanted > 240))
-        status = ax_fail(error, AX_USAGE, "motion: \"frames\" is 2 to 240.");
-    if (status != AX_OK)
-        return status;
     size_t size;
     ax_form* form = NULL;
     void* bytes = ax_form_save(ax_session_form(d->session), &size);
-    status = ax_form_load(bytes, size, &form, error);
+    ax_status status = ax_form_load(bytes, size, &form, error);
     ax_free(bytes);
     if (status != AX_OK)
         return status;
-    int n = ax_form_look(form).linkage->hinge_count;
-    track t = {.hinges = n,
+    track t = {.hinges = hinges,
                .wanted = wanted,
                .stride = 1,
                .places = ax_calloc(2 * (size_t)wanted, sizeof *t.places),
                .way = AX_NEW0(double, 2 * wanted),
-               .last = ax_calloc((size_t)n, sizeof *t.last)};
-    const char* state = "";
-    status = run_motion(d, form, &t, &state, error);
-    int frames = t.count < wanted ? t.count : wanted;
-    for (int k = 0; status == AX_OK && k < frames; ++k) // evenly spread over those kept, first and last among them
-        if (!send_motion(d, j, &t, k, frames, frames > 1 ? (int)((double)k * (t.count - 1) / (frames - 1) + 0.5) : 0))
+               .last = ax_calloc((size_t)hinges, sizeof *t.last)};
+    status = run_free(d, form, &t, error);
+    *frames = t.count < wanted ? t.count : wanted;
+    for (int i = 0; status == AX_OK && i < *frames; ++i) {
+        int k = *frames > 1 ? (int)((double)i * (t.count - 1) / (*frames - 1) + 0.5) : 0;
+        double share = t.travelled > 0 ? t.way[k] / t.travelled : 1;
+        if (!send_motion(d, j, i, *frames, share, hinges, (const double(*)[3])t.places[k]))
             status = ax_fail(error, AX_CANCELLED, "Cancelled.");
+    }
     for (int k = 0; k < t.count; ++k)
         ax_free(t.places[k]);
     ax_free(t.places);
     ax_free(t.way);
     ax_free(t.last);
     ax_form_free(form);
-    *result = json_pack("{s:i, s:s}", "frames", frames, "state", state);
+    return status;
+}
+
+static ax_status motion(desk* d, const job* j, json_t** result, ax_error* error)
+{
+    int frames = 60;
+    ax_status status = message_unpack(&j->message, error, "{s?i}", "frames", &frames);
+    if (status == AX_OK && (frames < 2 || frames > 240))
+        status = ax_fail(error, AX_USAGE, "motion: \"frames\" is 2 to 240.");
+    if (status != AX_OK)
+        return status;
+    ax_form* form = ax_session_form(d->session);
+    if (ax_form_get_dynamics(form)->kind == AX_DYNAMICS_NONE)
+        return ax_fail(error, AX_USAGE,
+                       "motion: nothing deploys the sheet yet. Apply gravity, inflation or expand first.");
+    int hinges = ax_form_look(form).linkage->hinge_count;
+    ax_form_motion* loaded = ax_form_motion_make(form);
+    status =
+        loaded ? move_under_load(d, j, loaded, hinges, frames, error) : move_free(d, j, hinges, frames, &frames, error);
+    ax_form_motion_free(loaded);
+    *result = json_pack("{s:i, s:s}", "frames", frames, "state", loaded ? "simulated" : "deployed");
     return status;
 }
 

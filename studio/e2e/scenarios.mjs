@@ -383,23 +383,33 @@ export const scenarios = {
         });
     },
 
-    async "the deployment is played through states of the solver"(browser) {
-        await withStudio(browser, bowl, async (hand) => {
-            const rest = await hand.page.evaluate(() => [...(auxshell.shell().simulated ?? auxshell.shell().deployed)]);
+    async "the deployment is played through states of the solver, while it computes them"(browser) {
+        await withStudio(browser, [{ ...circle, triangles: 1500 }, ...bowl.slice(1)], async (hand) => {
+            const { page } = hand;
+            const rest = await page.evaluate(() => {
+                window.shown = []; // of each state on screen: its place, and whether the last one was there yet
+                auxshell.motion.subscribe(({ shown, frames, total }) => shown !== null && window.shown.push([shown, frames.length < total]));
+                return [...(auxshell.shell().simulated ?? auxshell.shell().deployed)];
+            });
             await hand.key("Space");
-            await hand.page.waitForFunction(() => auxshell.motion.value.frames.length > 3 && !auxshell.motion.value.computing, null, { timeout: 120000 });
-            const way = await hand.page.evaluate(() => ({
+            await page.waitForFunction(() => auxshell.motion.value.frames.length > 3 && !auxshell.motion.value.playing, null, { timeout: 120000 });
+            const way = await page.evaluate(() => ({
+                shown: window.shown,
                 shares: auxshell.motion.value.shares,
                 heights: auxshell.motion.value.frames.map((f) => Math.max(...f.filter((_, k) => k % 3 === 2)) - Math.min(...f.filter((_, k) => k % 3 === 2))),
                 last: [...auxshell.motion.value.frames.at(-1)],
             }));
-            assert.ok(way.heights[0] < 0.25 * way.heights.at(-1), `from ${way.heights[0]} to ${way.heights.at(-1)} high`);
+            assert.ok(way.shown.some(([, before]) => before), "the first states are shown before the last one is computed");
+            const places = way.shown.map(([place]) => place).filter((place, k, all) => place !== all[k - 1]);
+            assert.deepEqual(places, way.shares.map((_, k) => k), "every state is shown, in order");
+            assert.ok(way.heights[0] < 0.01 * way.heights.at(-1), `from ${way.heights[0]} to ${way.heights.at(-1)} high`);
+            assert.ok(way.heights.every((h, k) => k === 0 || Math.abs(h - way.heights[k - 1]) < 0.1 * way.heights.at(-1)), `it does not jump: ${way.heights}`);
             assert.ok(Math.abs(way.shares.at(-1) - 1) < 1e-6);
-            const edge = 0.4;
+            const edge = 0.2;
             assert.ok(Math.max(...way.last.map((v, k) => Math.abs(v - rest[k]))) < edge, "it ends where the document is");
             await hand.key("Home");
             await hand.key(",");
-            await hand.page.getByText(/State \d+ of \d+/).waitFor();
+            await page.getByText(/State \d+ of \d+/).waitFor();
         });
     },
 

@@ -30,7 +30,7 @@ onOtherFrame((frame) => {
     const shares = motion.value.shares.slice();
     frames[place[0]] = places as Float32Array;
     shares[place[0]] = share[0];
-    change({ frames, shares, total: place[1], shown: motion.value.playing ? place[0] : motion.value.shown });
+    change({ frames, shares, total: place[1] });
 });
 
 // a frame of another state: the motion no longer leads to what the document is
@@ -45,7 +45,7 @@ export async function computeMotion(): Promise<boolean> {
     if (motion.value.frames.length && ofRevision === shell.revision) return true;
     motion.value = { ...none, computing: true, playing: motion.value.playing };
     try {
-        await ask("motion", { frames: 60 });
+        await ask("motion", { frames: 90 });
         ofRevision = currentShell()?.revision ?? -1;
         change({ computing: false });
         return motion.value.frames.length > 0;
@@ -58,28 +58,34 @@ export async function computeMotion(): Promise<boolean> {
 }
 
 let timer: ReturnType<typeof setInterval> | undefined;
+const pace = 33; // ms between states, where the solver is no slower
 
+/** States follow one another as soon as they are there. */
 export async function playMotion(): Promise<void> {
     if (motion.value.playing) {
         stopMotion();
         return;
     }
-    change({ playing: true });
-    // what is computed now is shown as it comes; what is known already is shown at 30 frames a second
     const known = motion.value.frames.length > 0 && ofRevision === currentShell()?.revision;
-    if (!(await computeMotion()) || !motion.value.playing) return;
-    if (!known || reducedMotion.value) {
-        change({ playing: false, shown: null });
+    change({ playing: true });
+    if (reducedMotion.value) {
+        await computeMotion();
+        change({ playing: false, shown: motion.value.frames.length ? 0 : null });
         return;
     }
-    let k = motion.value.shown === null || motion.value.shown >= motion.value.frames.length - 1 ? 0 : motion.value.shown;
+    const from = known ? motion.value.shown ?? Infinity : Infinity;
+    let k = from < motion.value.frames.length - 1 ? from : 0;
     clearInterval(timer);
     timer = setInterval(() => {
-        if (k >= motion.value.frames.length) {
+        const { frames, total, computing, playing } = motion.value;
+        if (!playing) clearInterval(timer);
+        else if (frames[k]) change({ shown: k++ });
+        else if (!computing && k >= total) {
             stopMotion();
             change({ shown: null });
-        } else change({ shown: k++ });
-    }, 33);
+        }
+    }, pace);
+    if (!(await computeMotion())) stopMotion();
 }
 
 export function stopMotion(): void {
