@@ -326,8 +326,7 @@ static void measure_held(ax_form* f, ax_form_report* r)
 {
     static const char* const rim_names[] = {"free", "fixed", "slide"};
     bool hangs = ax_form_hangs(f), ready = !f->stale;
-    const ax_solver* s = ready ? (hangs ? f->hang : f->shape) : NULL;
-    const ax_form_groups* g = hangs ? &f->hang_groups : &f->shape_groups;
+    bool slides = hangs && !ax_form_shares(f); // under the load; else in the shape
     const double(*x)[3] = (const double(*)[3])(hangs ? f->simulated : f->deployed);
     double mean = r->edge;
     r->held = AX_NEW0(ax_held_figure, f->rim_count + f->held_count + 1);
@@ -338,9 +337,10 @@ static void measure_held(ax_form* f, ax_form_report* r)
         *to = (ax_held_figure){
             .name = "boundary", .kind = rim_names[f->rim[k].kind], .count = f->rim[k].count, .hinge = -1};
         to->residual = rim_residual(f, k, x, &to->hinge);
-        to->multiplier =
-            s && g->rim ? largest_multiplier(s, g->rim[k], f->rim[k].kind == AX_RIM_FIXED ? f->rim[k].count : 1) / mean
-                        : 0;
+        bool fixed = f->rim[k].kind == AX_RIM_FIXED, loaded = fixed ? hangs : slides;
+        const ax_solver* s = ready ? (loaded ? f->hang : f->shape) : NULL;
+        const ax_form_groups* g = loaded ? &f->hang_groups : &f->shape_groups;
+        to->multiplier = s && g->rim ? largest_multiplier(s, g->rim[k], fixed ? f->rim[k].count : 1) / mean : 0;
     }
     for (int k = 0; k < f->held_count; ++k) {
         const ax_form_constraint* c = f->held + k;

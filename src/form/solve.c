@@ -101,6 +101,8 @@ static void add_holders(ax_form* f, ax_solver* s, int first, bool hang, ax_form_
             groups->rim[k] = add(s, hang ? "fixed" : "closeness", 1, part->count, part->hinges, first, rim, NULL);
             if (groups->rim[k] >= 0)
                 ax_solver_set_all(s, groups->rim[k], 0, 3, part->places[0]);
+        } else if (part->kind == AX_RIM_SLIDE && hang && ax_form_shares(f)) { // held where the shape has slid to
+            groups->rim[k] = add(s, "fixed", 1, part->count, part->hinges, first, rim, NULL);
         } else if (part->kind == AX_RIM_SLIDE) {
             // rims longer than one constraint takes keep their order piece by piece
             int pieces = (part->count + AX_MOST_POINTS - 1) / AX_MOST_POINTS;
@@ -516,11 +518,26 @@ static void iterate_shape(ax_form* f, int iterations)
     }
 }
 
+// A frame is built as designed. Were its hinges to slide under the load too, the sheet would turn in any rim that is nearly round,
+// by next to no force and for thousands of iterations.
+static void hold_rim(ax_form* f)
+{
+    for (int k = 0; k < f->rim_count && ax_form_shares(f); ++k) {
+        const ax_rim_part* part = f->rim + k;
+        if (part->kind != AX_RIM_SLIDE || part->count == 0)
+            continue;
+        for (int i = 0; i < part->count; ++i)
+            memcpy(f->scratch[i], f->deployed[part->hinges[i]], sizeof *f->scratch);
+        ax_solver_set_all(f->hang, f->hang_groups.rim[k], 0, 3, *f->scratch);
+    }
+}
+
 static void iterate_hang(ax_form* f, int iterations)
 {
     int n = f->lattice.linkage.hinge_count;
     measure_sides(f);
     ax_solver_set_all(f->hang, f->hang_groups.panels, lane_of("rigid_triangle", "lengths"), 3, f->side[0]);
+    hold_rim(f);
     if (f->dynamics.kind == AX_DYNAMICS_GRAVITY) { // the weight is that of the flat sheet
         for (int h = 0; h < n; ++h)
             f->scratch[h][0] = f->flat[h][0], f->scratch[h][1] = f->flat[h][1], f->scratch[h][2] = 0;
