@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char* const option_units[3] = {"mm", "cm", "m"};
+
 enum { WIDTH = 100, COLUMN = 30 };
 
 static void* place(const command_option* option, void* arguments)

@@ -55,6 +55,22 @@ typedef struct command_option {
         .kind = OPTION_CHOICE, .choices = ax_up_words, .choice_count = 3, .offset = offsetof(arguments, member)        \
     }
 
+// In which unit a mesh file is drawn: an int of their arguments, `first` for millimetres.
+#define OPTION_UNITS(arguments, member, ...)                                                                           \
+    {                                                                                                                  \
+        .name = "--units", .text = "unit of the target's coordinates", .kind = OPTION_CHOICE, .choices = option_units, \
+        .choice_count = 3, .offset = offsetof(arguments, member), __VA_ARGS__                                          \
+    }
+extern const char* const option_units[3];
+
+// The band of scale factors: a double[2] of their arguments.
+#define OPTION_SCALE(arguments, member)                                                                                \
+    {                                                                                                                  \
+        .name = "--scale", .value = "LO,HI",                                                                           \
+        .text = "band of scale factors: how far a triangle's neighbourhood may expand, within 1 to 2",                 \
+        .kind = OPTION_BAND, .lo = 1, .hi = 2, .offset = offsetof(arguments, member)                                   \
+    }
+
 // Takes one row of a list: a name and what it means.
 typedef void (*list_row)(const char* name, const char* text, FILE* out);
 

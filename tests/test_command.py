@@ -136,10 +136,20 @@ class Check(CommandCase):
         self.assertIn("2.0", figures["words"])
         self.assertIn("--scale", figures["words"])
 
-    def test_saddle_is_refused(self):
-        done = run("check", SADDLE)
+    def test_hemisphere_fits_the_widest_band(self):
+        self.assertEqual(json.loads(self.succeed("check", HEMISPHERE, "--scale", "1,2", "--json"))["verdict"], "deployable")
+
+    def test_saddle_is_refused_and_shown_another_way(self):
+        done = run("check", SADDLE, "--nearest", self.folder / "none.obj")
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertIn("Not deployable", done.stdout)
+        self.assertIn("drape", done.stdout)
+        self.assertEqual(self.files(), [])
+
+    def test_nearest_surface_is_deployable_as_it_is(self):
+        nearest = self.folder / "nearest.obj"
+        self.succeed("check", SURFACES / "valley_roof.obj", "--nearest", nearest)
+        self.assertEqual(json.loads(self.succeed("check", nearest, "--json"))["verdict"], "deployable")
 
     def test_valley_is_turned_outward_and_deployable_after_projection(self):
         figures = json.loads(self.succeed("check", SURFACES / "valley_roof.obj", "--json"))

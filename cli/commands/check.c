@@ -13,9 +13,17 @@
 typedef struct arguments {
     const char* target;
     bool json;
-    int up;
-    const char* png;
+    int up, units; // units: 0 unless given, then ax_unit + 1
+    double scale[2];
+    const char *png, *nearest;
 } arguments;
+
+static void defaults(void* given)
+{
+    arguments* a = given;
+    const ax_target_options usual = ax_target_options_default();
+    a->scale[0] = usual.scale_lo, a->scale[1] = usual.scale_hi;
+}
 
 static const command_option options[] = {
     {.name = "TARGET",
@@ -25,12 +33,19 @@ static const command_option options[] = {
      .required = true,
      .offset = offsetof(arguments, target)},
     OPTION_UP(arguments, up),
+    OPTION_UNITS(arguments, units, .first = AX_MILLIMETRE + 1, .fallback = "that of the file, whatever it is"),
+    OPTION_SCALE(arguments, scale),
     {.name = "--json", .text = "print every figure as JSON", .kind = OPTION_FLAG, .offset = offsetof(arguments, json)},
     {.name = "--png",
      .value = "DIR",
      .text = "write pictures of the mean curvature and of the scale factors: DIR/curvature.png and DIR/scale.png",
      .kind = OPTION_TEXT,
      .offset = offsetof(arguments, png)},
+    {.name = "--nearest",
+     .value = "FILE.obj",
+     .text = "write the nearest surface that bulges outwards, for which design --project designs",
+     .kind = OPTION_TEXT,
+     .offset = offsetof(arguments, nearest)},
 };
 
 static const char* const verdict_names[] = {
@@ -39,29 +54,37 @@ static const char* const verdict_names[] = {
     [AX_NOT_DEPLOYABLE] = "not deployable",
 };
 
-static void print_screen(const char* path, const ax_mesh* mesh, const ax_mesh_repairs* repairs, const ax_screen* s)
+// Zero instead of what rounding has left of it.
+static double tidy(double x, double size)
 {
-    double size[3], largest = 0;
+    return fabs(x) < 1e-9 * size ? 0 : x;
+}
+
+static void print_screen(const arguments* a, const ax_mesh* mesh, const ax_mesh_repairs* repairs, const ax_screen* s)
+{
+    const double flat = 1 / s->diagonal, *worst = s->curvature_worst_place;
+    double size[3];
     for (int c = 0; c < 3; ++c)
         size[c] = s->bounds[1][c] - s->bounds[0][c];
-    for (int c = 0; c < 3; ++c)
-        largest = fmax(largest, size[c]);
-    printf("%s\n", path);
+    printf("%s\n", a->target);
     printf("  Mesh            %d vertices, %d faces, %d vertices on the rim\n", mesh->vertex_count, mesh->face_count,
            s->rim_count);
     printf("  Mended          ");
     repairs_print(repairs, stdout);
-    printf("  Size            %.5g x %.5g x %.5g; area %.5g, rim %.5g, in the file's unit\n", size[0], size[1], size[2],
-           s->area, s->rim_length);
-    printf("  Mean curvature  median %.4g, smallest %.4g, 1 %% below %.4g, 5 %% above %.4g\n", s->curvature_median,
-           s->curvature_min, s->curvature_q01, s->curvature_q95);
+    printf("  Size            %.5g x %.5g x %.5g; area %.5g, rim %.5g, in %s\n", size[0], size[1], size[2], s->area,
+           s->rim_length, a->units ? ax_unit_name((ax_unit)(a->units - 1)) : "the file's unit");
+    printf("  Mean curvature  median %.4g, smallest %.4g, 1 %% below %.4g, 5 %% above %.4g\n",
+           tidy(s->curvature_median, flat), tidy(s->curvature_min, flat), tidy(s->curvature_q01, flat),
+           tidy(s->curvature_q95, flat));
     if (s->curvature_nonpositive_share > 0)
-        printf("  H <= 0          on %.1f %% of the area, around (%.3f, %.3f, %.3f)\n",
-               100 * s->curvature_nonpositive_share, s->curvature_worst_place[0], s->curvature_worst_place[1],
-               s->curvature_worst_place[2]);
+        printf("  H <= 0          on %.1f %% of the area, around (%.5g, %.5g, %.5g)\n",
+               100 * s->curvature_nonpositive_share, tidy(worst[0], s->diagonal), tidy(worst[1], s->diagonal),
+               tidy(worst[2], s->diagonal));
     else
         printf("  H <= 0          nowhere\n");
-    if (s->height_field)
+    if (s->height_field && tidy(s->curvature_median, flat) <= 0)
+        printf("  Height field    yes\n");
+    else if (s->height_field)
         printf("  Height field    yes, it bulges towards %cz\n", s->gravity_direction < 0 ? '-' : '+');
     else
         printf("  Height field    no: parts of it lie above others, so that gravity cannot deploy it\n");
@@ -112,27 +135,48 @@ static ax_status draw(const arguments* a, const ax_mesh* mesh, const ax_screen* 
     return status;
 }
 
+// The surface itself, if it bulges outwards; nothing if no part of it does.
+static ax_status write_nearest(const char* path, const ax_mesh* mesh, const ax_screen* screen, ax_error* error)
+{
+    if (screen->projection.steps == 0 && screen->verdict != AX_DEPLOYABLE)
+        return AX_OK;
+    ax_mesh nearest = ax_mesh_copy(mesh);
+    ax_projection projection;
+    ax_status status = ax_target_project(&nearest, progress_reporter(), &projection, error);
+    progress_end();
+    if (status == AX_OK)
+        status = ax_mesh_write(&nearest, path, error);
+    ax_mesh_free(&nearest);
+    return status;
+}
+
 static ax_status run(const void* given, ax_error* error)
 {
     const arguments* a = given;
+    ax_target_options wanted = ax_target_options_default();
+    wanted.scale_lo = a->scale[0], wanted.scale_hi = a->scale[1];
     ax_mesh mesh = {0};
     ax_mesh_repairs repairs;
     ax_screen screen = {0};
     ax_read_options read = ax_read_options_default();
     read.up = (ax_up)a->up;
     ax_status status = a->png ? output_check_folder(a->png, error) : AX_OK;
+    if (status == AX_OK && a->nearest)
+        status = output_check(a->nearest, ".obj", error);
     if (status == AX_OK)
         status = ax_mesh_read(a->target, &read, &mesh, &repairs, error);
     if (status == AX_OK)
-        status = ax_target_screen(&mesh, NULL, progress_reporter(), &screen, error);
+        status = ax_target_screen(&mesh, &wanted, progress_reporter(), &screen, error);
     progress_end();
     if (status == AX_OK && a->png)
         status = draw(a, &mesh, &screen, error);
+    if (status == AX_OK && a->nearest)
+        status = write_nearest(a->nearest, &mesh, &screen, error);
     if (status == AX_OK) {
         if (a->json)
             json_print(screen_json(&mesh, &repairs, &screen), stdout);
         else
-            print_screen(a->target, &mesh, &repairs, &screen);
+            print_screen(a, &mesh, &repairs, &screen);
         if (screen.verdict == AX_NOT_DEPLOYABLE)
             status = AX_CANNOT_REALISE;
     }
@@ -150,5 +194,6 @@ const command command_check = {
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),
+    .defaults = defaults,
     .run = run,
 };

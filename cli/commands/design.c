@@ -87,7 +87,6 @@ static const char* parse_angle(const char* text, void* value)
 }
 
 static const char* const loads[] = {"gravity", "inflation"};
-static const char* const units[] = {"mm", "cm", "m"};
 static const char* const borders[] = {"equilateral", "released", "inside"};
 
 static const command_option options[] = {
@@ -126,21 +125,9 @@ static const command_option options[] = {
      .choice_count = 2,
      .first = AX_LOAD_GRAVITY,
      .offset = offsetof(arguments, design.load.kind)},
-    {.name = "--units",
-     .text = "unit of the target's coordinates",
-     .kind = OPTION_CHOICE,
-     .choices = units,
-     .choice_count = 3,
-     .first = AX_MILLIMETRE,
-     .offset = offsetof(arguments, design.unit)},
+    OPTION_UNITS(arguments, design.unit, .first = AX_MILLIMETRE),
     OPTION_UP(arguments, up),
-    {.name = "--scale",
-     .value = "LO,HI",
-     .text = "band of scale factors: how far a triangle's neighbourhood may expand, within 1 to 2",
-     .kind = OPTION_BAND,
-     .lo = 1,
-     .hi = 2,
-     .offset = offsetof(arguments, design.target.scale_lo)},
+    OPTION_SCALE(arguments, design.target.scale_lo),
     {.name = "--mouth-min",
      .value = "DEG",
      .text = "smallest mouth angle allowed at a flat hinge: room for joints and the saw",

@@ -56,6 +56,9 @@ ax_status ax_mesh_read_faces(const char* path, const ax_read_options* options, a
 // are placed by the numbers of the arrays handed in. On failure the mesh is freed and empty.
 ax_status ax_mesh_make_surface(ax_mesh* mesh, ax_mesh_repairs* repairs, ax_error* error);
 
+// Writes a mesh as OBJ, whole or not at all; vertex k + 1 is positions[k], exactly. AX_FAILED when it cannot be written.
+ax_status ax_mesh_write(const ax_mesh* mesh, const char* path, ax_error* error);
+
 // What refining has done.
 typedef struct ax_refinement {
     int rounds;          // each divides every face into four; 0: fine enough already

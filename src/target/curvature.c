@@ -138,7 +138,8 @@ ax_curvature_screen ax_curvature_measure(const ax_mesh* mesh)
     screen.median = quantile(n, samples, 0.5 * screen.area);
     screen.q95 = quantile(n, samples, 0.95 * screen.area);
     screen.positive = screen.nonpositive_share <= NOISE_SHARE;
-    screen.dome_like = screen.q95 >= DOME_LIKE * unit;
+    screen.asked = DOME_LIKE * unit;
+    screen.dome_like = screen.q95 >= screen.asked;
     ax_free(samples);
     find_worst(mesh, &screen, FLAT * unit, screen.worst_place);
     return screen;

@@ -11,6 +11,7 @@ typedef struct ax_curvature_screen {
     double nonpositive_share;     // share of area with H <= 0
     double worst_place[3];        // centroid of the largest part with H <= 0, or of the smallest H
     bool positive;                // H > 0 but for what noise explains
+    double asked;                 // of q95, for the next:
     bool dome_like;               // curved enough somewhere that projection would keep part of the surface
 } ax_curvature_screen;
 

@@ -175,14 +175,22 @@ static void refuse_curvature(ax_screen* screen, const ax_curvature_screen* curva
     double size = sqrt(curvature->area);
     say(screen,
         "Not deployable. No part of the surface is dome-like: its mean curvature is not positive on %.0f %% of the "
-        "area, "
-        "and even the most curved twentieth of it reaches only %.2f / sqrt(area), where 0.5 is asked. Projection would "
-        "replace all of it. ",
-        100 * curvature->nonpositive_share, fmax(0, curvature->q95 * size));
+        "area, and even the most curved twentieth of it ",
+        100 * curvature->nonpositive_share);
+    if (curvature->q95 * size < 1e-6)
+        say(screen, "does not bulge");
+    else
+        say(screen, "is flatter than a sphere of radius %.5g, where %.5g or less is asked", 1 / curvature->q95,
+            1 / curvature->asked);
+    say(screen, ". Projection would replace all of it. ");
     if (curvature->median < 0 && curvature->q01 * size < -0.5)
         say(screen, "Turned over, it would bulge. Check which way its faces look.");
     else
-        say(screen, "Start from a surface that bulges outwards.");
+        say(screen, "Start from a surface that bulges outwards.%s",
+            curvature->q01 < 0 && curvature->q95 * size >= 1e-6
+                ? " A saddle between held edges is found from its rim instead, by the operators rim_spline and drape "
+                  "of a recipe."
+                : "");
 }
 
 // Tries the nearest surface of positive mean curvature.
