@@ -132,6 +132,10 @@ void fabricate_print(const ax_cut_plan* p, FILE* out)
     for (int k = 0; k < p->part_count; ++k)
         fprintf(out, "; %d x %s", p->parts[k].count, p->parts[k].name);
     putc('\n', out);
+    if (*p->doubt) {
+        fputs("                  ", out);
+        print_wrapped(out, 18, 18, p->doubt);
+    }
     if (p->labels_dropped)
         fprintf(out, "  Labels          %d panels are too small for one\n", p->labels_dropped);
     print_forces(p, out);

@@ -454,6 +454,26 @@ static void nothing_narrower_than_the_ligament_is_left_at_a_hinge(void** state)
     ax_cut_plan_free(&plan);
 }
 
+static void a_ligament_that_would_break_or_is_wide_is_doubted(void** state)
+{
+    (void)state;
+    const struct {
+        const char *joint, *material, *word;
+    } cases[] = {{"living-hinge", "plywood-3", "breaks"},
+                 {"living-hinge:ligament=0.8", "polypropylene-0.8", ""},
+                 {"living-hinge:ligament=30", "polypropylene-0.8", "twentieth"},
+                 {"ring", "plywood-3", ""}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        ax_fabricate_options o = choose(cases[k].joint, cases[k].material, NULL, 0);
+        ax_cut_plan plan = make(&sample, &o);
+        if (*cases[k].word)
+            assert_non_null(strstr(plan.doubt, cases[k].word));
+        else
+            assert_string_equal(plan.doubt, "");
+        ax_cut_plan_free(&plan);
+    }
+}
+
 static void pieces_fit_their_sheets_and_hold_together(void** state)
 {
     (void)state;
@@ -996,6 +1016,7 @@ int main(void)
         cmocka_unit_test(holes_keep_their_edge_distance),
         cmocka_unit_test(ligaments_have_their_width_and_the_hinge_in_their_middle),
         cmocka_unit_test(nothing_narrower_than_the_ligament_is_left_at_a_hinge),
+        cmocka_unit_test(a_ligament_that_would_break_or_is_wide_is_doubted),
         cmocka_unit_test(pieces_fit_their_sheets_and_hold_together),
         cmocka_unit_test(clearance_is_what_turning_the_panels_finds),
         cmocka_unit_test(what_collides_is_named),

@@ -81,7 +81,7 @@ static json_t* plan_json(const ax_cut_plan* p)
     for (int k = 0; k < AX_NOTE; ++k)
         json_object_set_new(lengths, ax_operation_name((ax_operation)k), json_number(p->cut_length[k]));
     return json_pack("{s:o, s:s, s:f, s:f, s:s, s:o, s:f, s:i, s:f, s:f, s:f, s:o, s:f, s:f, s:b, s:i, s:i, s:i, s:i, "
-                     "s:f, s:b, s:o, s:o, s:o}",
+                     "s:f, s:b, s:o, s:o, s:o, s:s}",
                      "joint", joint, "material", p->material.name, "thickness", p->material.thickness, "kerf", p->kerf,
                      "profile", p->profile->name, "sheets", sheets, "utilisation", p->utilisation, "panels",
                      p->panel_count, "area_mm2", p->area, "mass_kg", p->mass, "travel_mm", p->travel, "cut_mm", lengths,
@@ -89,7 +89,7 @@ static json_t* plan_json(const ax_cut_plan* p)
                      p->in_place, "labels_dropped", p->labels_dropped, "seams", p->seam_count, "clashes_found",
                      p->clashes_found, "frames_checked", p->frames_checked, "frame_error", p->frame_error,
                      "simulated_way", p->simulated_way, "frames", frames_json(p), "clashes", clashes_json(p), "hinges",
-                     hinges_json(p));
+                     hinges_json(p), "doubt", p->doubt);
 }
 
 static ax_status run(const void* given, ax_error* error)

@@ -14,6 +14,7 @@ typedef struct ax_material {
     double feature;         // mm, least width of what must not break
     double strength;        // MPa, tension across a feature, for ratings
     double stiffness;       // MPa, Young's modulus
+    bool bends;             // a narrow ligament by a hundred degrees in its plane, and does not break
 } ax_material;
 const ax_material* ax_materials(int* count);
 const ax_material* ax_material_named(const char* name); // NULL: none
@@ -183,6 +184,7 @@ typedef struct ax_cut_plan {
     double utilisation;                 // area of panels / area of all sheets
     int labels_outside, labels_dropped; // named beside the panel with a leader; not named at all
     int sizes;                          // as in the options
+    char doubt[256];                    // what speaks against this joint here, a sentence; empty: nothing
     bool in_place;                      // the sheet shows the flat state as it is, moved only
     char title[128], date[32];
 } ax_cut_plan;

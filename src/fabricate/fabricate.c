@@ -201,6 +201,19 @@ static void count_parts(ax_work* w)
     work->part(&w->joint, joints, &w->plan->parts[0]);
 }
 
+static void doubt_joint(ax_work* w)
+{
+    const struct ax_joint_work* work = w->plan->joint->work;
+    double least = INFINITY;
+    for (int t = 0; t < w->linkage->triangle_count && work->doubt; ++t) {
+        const int* corner = w->linkage->triangles[t];
+        for (int k = 0; k < 3; ++k)
+            least = fmin(least, ax_distance2(w->flat[corner[k]], w->flat[corner[(k + 1) % 3]]));
+    }
+    if (work->doubt)
+        work->doubt(&w->joint, least, w->plan->doubt, sizeof w->plan->doubt);
+}
+
 ax_status ax_fabricate(const ax_design* design, const ax_fabricate_options* options, const ax_progress* progress,
                        ax_cut_plan* plan, ax_error* error)
 {
@@ -232,6 +245,7 @@ ax_status ax_fabricate(const ax_design* design, const ax_fabricate_options* opti
         if (plan->sheet_count > 1)
             ax_draw_overview(&w);
         count_parts(&w);
+        doubt_joint(&w);
         status = ax_prove_clearance(&w, progress, error);
     }
     if (status != AX_OK)

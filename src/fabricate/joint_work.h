@@ -28,6 +28,8 @@ struct ax_joint_work {
     ax_status (*rule)(const ax_joint_job* job, ax_panel_rule* rule, ax_error* error);
     // Force that one joint is taken to bear, N.
     double (*rated)(const ax_joint_job* job);
+    // Says what speaks against the joint without forbidding it; `edge` is the shortest of all panels, mm. NULL: nothing does.
+    void (*doubt)(const ax_joint_job* job, double edge, char* words, size_t size);
     // What a test coupon tries: five values of one parameter, or factors of the one chosen. All 0: there is nothing to try.
     struct {
         int parameter;

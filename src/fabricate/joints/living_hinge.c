@@ -3,6 +3,7 @@
 #include "fabricate/joint_work.h"
 
 #include <math.h>
+#include <stdio.h>
 
 enum { LIGAMENT };
 
@@ -28,6 +29,22 @@ static ax_status rule(const ax_joint_job* job, ax_panel_rule* out, ax_error* err
     return AX_OK;
 }
 
+static void doubt(const ax_joint_job* job, double edge, char* words, size_t size)
+{
+    double ligament = job->value[LIGAMENT];
+    if (!job->material->bends)
+        snprintf(
+            words, size,
+            "%s breaks where a ligament bends by a hundred degrees, as it does when the sheet opens. Take a material "
+            "that bends, such as polypropylene, or join loose panels by rings or pins.",
+            job->material->name);
+    else if (ligament > edge / 20)
+        snprintf(words, size,
+                 "Ligaments of %g mm are more than a twentieth of the shortest edge, %.3g mm: they turn about their "
+                 "middle only nearly. Make a model first, or design with larger panels.",
+                 ligament, edge);
+}
+
 // The ligament in tension.
 static double rated(const ax_joint_job* job)
 {
@@ -40,7 +57,9 @@ const ax_joint_type ax_joint_living_hinge = {
     .one_piece = true,
     .parameters = parameters,
     .parameter_count = sizeof parameters / sizeof *parameters,
-    .work =
-        &(const struct ax_joint_work){
-            .suit = suit, .rule = rule, .rated = rated, .trial = {LIGAMENT, true, {0.5, 0.75, 1, 1.5, 2}}},
+    .work = &(const struct ax_joint_work){.suit = suit,
+                                          .rule = rule,
+                                          .rated = rated,
+                                          .doubt = doubt,
+                                          .trial = {LIGAMENT, true, {0.5, 0.75, 1, 1.5, 2}}},
 };
