@@ -30,18 +30,27 @@ double ax_unit_in_metres(ax_unit unit);
 ax_unit ax_unit_likely(double length, ax_unit unit);
 bool ax_unit_parse(const char* name, ax_unit* unit);
 
+struct ax_design;
+// For looking at a design while it is made. `look` is called from the calling thread, before progress is reported, with a design of
+// which linkage, unit, flat and deployed state and the scale factors measured on them are there; all of it only during the call.
+typedef struct ax_design_watch {
+    void (*look)(void* context, const struct ax_design* so_far);
+    void* context;
+} ax_design_watch;
+
 typedef struct ax_design_options {
     int triangles;            // wanted count, 24 to 2,000,000; used when edge is 0. Default 600
     double edge;              // or the wanted mean triangle edge, document units; 0 = by count
     ax_target_options target; // scale band and flattening
     double mouth_min;         // smallest mouth angle allowed, degrees, 0 to 60; default 2
     ax_border border;
-    bool angle_given;   // false: the lattice angle is searched
-    double angle;       // degrees, lattice rows against the flattening's x axis
-    bool align_to_edge; // lattice rows along the longest straight part of the rim
-    bool project;       // project to positive mean curvature first if needed
-    ax_load load;       // what deploys it; kind AX_LOAD_NONE: not simulated
-    ax_unit unit;       // of the target's coordinates
+    bool angle_given;             // false: the lattice angle is searched
+    double angle;                 // degrees, lattice rows against the flattening's x axis
+    bool align_to_edge;           // lattice rows along the longest straight part of the rim
+    bool project;                 // project to positive mean curvature first if needed
+    ax_load load;                 // what deploys it; kind AX_LOAD_NONE: not simulated
+    ax_unit unit;                 // of the target's coordinates
+    const ax_design_watch* watch; // borrowed; NULL: nobody looks
 } ax_design_options;
 ax_design_options ax_design_options_default(void); // inflation at 100 Pa, 4 kg/m2 should gravity be chosen
 

@@ -319,6 +319,21 @@ static ax_status solve_jointly(ax_design* design, ax_joint_problem* problem, con
     return status;
 }
 
+// Somebody looks at a design that is being solved.
+typedef struct viewing {
+    const ax_design_watch* watch;
+    ax_design so_far; // borrows everything but the scale factors
+} viewing;
+
+static void show(void* context, const double (*flat)[2], const double (*deployed)[3])
+{
+    viewing* v = context;
+    v->so_far.flat = (double(*)[2])flat;
+    v->so_far.deployed = (double(*)[3])deployed;
+    ax_measure_scale(&v->so_far.linkage, flat, v->so_far.scale);
+    v->watch->look(v->watch->context, &v->so_far);
+}
+
 // Flat and deployed states on one lattice.
 static ax_status solve_on_lattice(ax_design* design, const flat_domain* domain, ax_lattice* lattice,
                                   const ax_design_options* options, double scale_max, const ax_progress* progress,
@@ -344,7 +359,13 @@ static ax_status solve_on_lattice(ax_design* design, const flat_domain* domain, 
                                 .border_unequal = options->border == AX_BORDER_RELEASED ? INFINITY : 0,
                                 .mouth_min = options->mouth_min * AX_PI / 180,
                                 .scale_max = scale_max};
+    viewing v = {.watch = options->watch, .so_far = {.linkage = design->linkage, .unit = design->unit}};
+    if (v.watch) {
+        v.so_far.scale = AX_NEW(double, design->linkage.triangle_count);
+        problem.look = show, problem.looking = &v;
+    }
     ax_status status = solve_jointly(design, &problem, progress, error);
+    ax_free(v.so_far.scale);
     ax_free(places);
     return status;
 }

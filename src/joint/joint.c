@@ -649,6 +649,27 @@ static void release(solver* s)
     ax_pool_free(s->pool);
 }
 
+// In document units.
+static void get_states(const solver* s, double (*flat)[2], double (*deployed)[3])
+{
+    for (int h = 0; h < s->hinges; ++h) {
+        for (int c = 0; c < 2; ++c)
+            flat[h][c] = s->x[h][c] * s->unit + s->flat_origin[c];
+        for (int c = 0; c < 3; ++c)
+            deployed[h][c] = s->x[h][2 + c] * s->unit + s->origin[c];
+    }
+}
+
+static void show(const solver* s)
+{
+    double(*flat)[2] = ax_alloc((size_t)s->hinges, sizeof *flat),
+    (*deployed)[3] = ax_alloc((size_t)s->hinges, sizeof *deployed);
+    get_states(s, flat, deployed);
+    s->problem->look(s->problem->looking, (const double(*)[2])flat, (const double(*)[3])deployed);
+    ax_free(flat);
+    ax_free(deployed);
+}
+
 ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], double (*deployed)[3],
                          const ax_progress* progress, ax_joint_result* result, ax_error* error)
 {
@@ -658,6 +679,8 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
     double mu = 1e3, longest = INFINITY, off_place = 0, congruence = worst_congruence(&s, (const state*)s.x);
     int k = 0;
     for (; k < STEPS; ++k) {
+        if (problem->look)
+            show(&s);
         if (!ax_progress_report(progress, "Solving flat and deployed state together", fmin(0.95, k / 8.0),
                                 congruence)) {
             status = ax_fail(error, AX_CANCELLED, "Cancelled.");
@@ -698,12 +721,7 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
             mu = 1e5;
     }
     if (status == AX_OK)
-        for (int h = 0; h < s.hinges; ++h) {
-            for (int c = 0; c < 2; ++c)
-                flat[h][c] = s.x[h][c] * s.unit + s.flat_origin[c];
-            for (int c = 0; c < 3; ++c)
-                deployed[h][c] = s.x[h][2 + c] * s.unit + s.origin[c];
-        }
+        get_states(&s, flat, deployed);
     *result = (ax_joint_result){.steps = k,
                                 .factorisations = s.factorisations,
                                 .converged = congruence < 1e-10,

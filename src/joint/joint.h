@@ -44,6 +44,9 @@ typedef struct ax_joint_problem {
     double scale_max;      // largest scale factor, which tells what mouths to expect; 2: no more than mouth_min
     int apart_count;       // pairs of panels that would overlap flat without being held apart
     const int (*apart)[2];
+    // For looking at, with the states that a step starts from; called before progress is reported. NULL: nobody looks.
+    void (*look)(void* context, const double (*flat)[2], const double (*deployed)[3]);
+    void* looking;
 } ax_joint_problem;
 
 typedef struct ax_joint_result {

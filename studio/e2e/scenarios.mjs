@@ -153,11 +153,12 @@ export const scenarios = {
             await dialog.getByLabel("Panels", { exact: true }).fill("240");
             await hand.page.keyboard.press("Enter");
             await hand.page.evaluate(() => {
-                window.seen = 0; // states of what is being made, of another linkage than the old one's
+                // states of what is being made, of another linkage than the old one's: of the surface's own solver, and under load
+                window.seen = { onSurface: 0, loaded: 0 };
                 const before = auxshell.shell().linkage.panels;
                 const settled = auxshell.stage.value.onBefore;
                 auxshell.stage.value.onBefore = () => {
-                    window.seen += auxshell.session.making.value && auxshell.shell().linkage.panels !== before;
+                    if (auxshell.session.making.value && auxshell.shell().linkage.panels !== before) window.seen[auxshell.shell().simulated ? "loaded" : "onSurface"]++;
                     settled();
                 };
             });
@@ -166,7 +167,18 @@ export const scenarios = {
             await hand.rest();
             const f = await hand.figures();
             assert.ok(f.panels > 180 && f.panels < 320, `${f.panels} panels`);
-            assert.ok(await hand.page.evaluate(() => window.seen) >= 2, "it was watched while it was made");
+            const seen = await hand.page.evaluate(() => window.seen);
+            assert.ok(seen.onSurface >= 1 && seen.onSurface + seen.loaded >= 3, `it was watched while it was made: ${JSON.stringify(seen)}`);
+            assert.notEqual(await hand.page.evaluate(() => auxshell.session.report.value.verdict.word), "No");
+            assert.deepEqual(await hand.page.evaluate(() => {
+                const stage = auxshell.stage.value;
+                return stage.shown.filter((id) => {
+                    const { state, rect } = stage.views[id];
+                    const { min, max } = stage.scenes[state].bounds;
+                    const at = stage.project(stage.views[id], stage.skins[state].centre(0, new stage.views[id].orbit.camera.position.constructor()).fromArray(min.map((v, k) => (v + max[k]) / 2)));
+                    return Math.abs(at.x - rect.x - rect.width / 2) > 0.2 * rect.width || Math.abs(at.y - rect.y - rect.height / 2) > 0.2 * rect.height;
+                });
+            }), [], "views that lost the shell");
             assert.equal(await dialog.count(), 0, "with nothing in the way");
             assert.ok(f.least >= 1 - 1e-3 && f.most <= 2 + 1e-3, `lambda ${f.least} to ${f.most}`);
         });

@@ -55,8 +55,27 @@ static const ax_field fields[] = {
             .doc = "If the surface is not dome-like everywhere, design for the nearest one that is."),
 };
 
-static ax_status design_for(const arguments* a, const char* path, const ax_progress* progress, ax_design* design,
-                            ax_error* error)
+// While the design is solved the form is that of the state at hand, for whoever looks when progress is reported.
+typedef struct viewing {
+    const ax_operator_context* context;
+    ax_form *before, *form;
+} viewing;
+
+static void look(void* context, const ax_design* so_far)
+{
+    viewing* v = context;
+    ax_form_free(v->form);
+    *v->context->form = ax_form_from_design(so_far, &v->form, NULL) == AX_OK ? v->form : v->before;
+}
+
+static void end_viewing(viewing* v)
+{
+    ax_form_free(v->form);
+    *v->context->form = v->before;
+}
+
+static ax_status design_for(const arguments* a, const char* path, const ax_progress* progress,
+                            const ax_design_watch* watch, ax_design* design, ax_error* error)
 {
     ax_design_options options = ax_design_options_default();
     options.triangles = a->triangles;
@@ -70,6 +89,7 @@ static ax_status design_for(const arguments* a, const char* path, const ax_progr
     options.project = a->project;
     options.unit = (ax_unit)a->unit;
     options.load.kind = AX_LOAD_NONE; // "gravity" and "inflation" deploy it
+    options.watch = watch;
     ax_read_options read = ax_read_options_default();
     read.up = (ax_up)a->up;
     ax_mesh mesh;
@@ -89,7 +109,10 @@ static ax_status apply(const ax_operator_context* context, const void* given, ax
     char* path = ax_operator_path(context, a->file);
     ax_design design = {0};
     ax_form* form = NULL;
-    ax_status status = design_for(a, path, context->progress, &design, error);
+    viewing v = {.context = context, .before = *context->form};
+    const ax_design_watch watch = {.look = look, .context = &v};
+    ax_status status = design_for(a, path, context->progress, context->progress ? &watch : NULL, &design, error);
+    end_viewing(&v);
     if (status == AX_OK)
         status = ax_form_from_design(&design, &form, error);
     if (status == AX_OK) {

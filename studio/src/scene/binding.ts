@@ -1,7 +1,7 @@
 // From state to scene: what the signals say is drawn. The scene itself reads no signal and writes none.
 import { effect } from "@preact/signals";
 import { stateDrawn, stateSubmitted } from "../state/latency";
-import { acknowledge, connection, currentShell, frames, holdStates, onShell, settleFrames } from "../state/session";
+import { acknowledge, connection, currentShell, frames, holdStates, making, onShell, settleFrames } from "../state/session";
 import { darkTheme, reducedMotion } from "../state/settings";
 import { hovered, selected, selectedHinges, shown } from "../state/selection";
 import { fieldView, mode, scaleLimit, tints } from "../state/view";
@@ -32,6 +32,7 @@ export function bindScene(stage: Stage): () => void {
     }
     stops.push(effect(() => stage.setLook(darkTheme.value ? dark : light)));
     stops.push(effect(() => void (stage.animated = !reducedMotion.value)));
+    stops.push(effect(() => stage.follows(making.value)));
     stops.push(effect(() => {
         const { shown: k, frames: states } = motion.value;
         if (k !== null && states[k]) stage.setPlaces(states[k]);

@@ -75,6 +75,8 @@ export class Stage {
     private held = false;
     /** Whether a slow renderer draws better pictures at rest at all. */
     refines = true;
+    /** Views that nobody has turned keep the shell in sight while it is made. */
+    private following = false;
     readonly renderer: THREE.WebGLRenderer;
     readonly rendererName: string;
     /** No graphics card: smaller shadows. */
@@ -216,6 +218,21 @@ export class Stage {
         this.skins?.flat.touch();
         this.skins?.space.touch();
         this.dirtyShadows = this.dirtyGround = true;
+        if (this.following) this.keepInSight();
+    }
+
+    follows(making: boolean): void {
+        if (this.following && !making) for (const view of this.seen) if (!view.orbit.touched) this.frame(view);
+        this.following = making;
+    }
+
+    private keepInSight(): void {
+        for (const view of this.seen) {
+            const { x, y, width, height } = view.rect;
+            const { min, max } = this.scenes![view.state].bounds;
+            const at = this.project(view, new THREE.Vector3(...min).add(new THREE.Vector3(...max)).multiplyScalar(0.5));
+            if (!view.orbit.touched && Math.max(Math.abs(at.x - x - width / 2) / width, Math.abs(at.y - y - height / 2) / height) > 0.25) this.frame(view, false);
+        }
     }
 
     each(change: (scene: ShellScene) => void): void {

@@ -1,6 +1,6 @@
 import { useSignal } from "@preact/signals";
 import { commandNamed, finish } from "../state/commands";
-import { connection, documentState, progress, readOnly, reconnect, report, status } from "../state/session";
+import { connection, documentState, making, progress, readOnly, reconnect, report, status } from "../state/session";
 import { darkTheme, theme } from "../state/settings";
 import { recording } from "../state/video";
 import { type Mode, dialog, drawerOpen, mode, page } from "../state/view";
@@ -22,7 +22,7 @@ export function SolverChip() {
         return (
             <span class="row" role="status">
                 <span class="chip plain"><i class="ring" /><span>{p.stage || p.job}{p.fraction > 0 ? `, ${number(100 * p.fraction, 0)} %` : ""}</span></span>
-                <Button small onClick={commandNamed("cancel").run}>Cancel</Button>
+                {!making.value && <Button small onClick={commandNamed("cancel").run}>Cancel</Button>}
             </span>
         );
     if (recording.value) return <span class="chip plain" role="status"><i class="ring" /><span>Recording</span></span>;

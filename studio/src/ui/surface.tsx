@@ -77,7 +77,7 @@ export function SurfaceDialog() {
         const { name, token, triangles, unit, up } = c;
         const recipe: Record<string, unknown>[] = [{ op: "start_target", file: name, triangles, unit, ...(up === "file" ? {} : { up }), ...(refine ? { refine } : {}), ...(project ? { project: true } : {}) }];
         const load = s?.by_inflation ? "inflation" : s?.by_gravity ? "gravity" : null;
-        if (load) recipe.push({ op: load });
+        if (load) recipe.push({ op: load, adapt: false }); // the panels have the sizes that open on the surface
         if (await command("new", { recipe, files: { [name]: token }, name: name.replace(/\.\w+$/, "") })) {
             page.value = "work";
             close();

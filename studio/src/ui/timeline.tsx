@@ -9,6 +9,9 @@ import { Icon } from "./icons";
 /** Operators of the group dynamics that stand for a way of deploying. */
 const drives = () => operators.value.filter((o) => o.group === "dynamics" && ["gravity", "inflation", "inflate", "expand"].includes(o.name));
 
+/** The panels have the sizes that open on a given surface: they are not to give way for another shape. */
+const onTarget = () => documentState.value?.steps[0]?.operator.op === "start_target";
+
 function present(): string {
     const d = documentState.value;
     if (!d) return "";
@@ -36,7 +39,7 @@ export function Timeline() {
                 <Choice name="Deployed by" value={present()} options={[...(present() ? [] : [{ value: "", title: "By…", disabled: true }]), ...all.map((o) => ({ value: o.name, title: o.title }))]}
                     onChange={(name) => {
                         const schema = all.find((o) => o.name === name);
-                        if (schema) void apply(callOf(schema, {}));
+                        if (schema) void apply(callOf(schema, onTarget() ? { adapt: false } : {}));
                     }} />
             )}
         </section>
