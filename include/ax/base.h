@@ -50,6 +50,7 @@ void* ax_calloc(size_t count, size_t size);        // zeroed
 void* ax_alloc_aligned(size_t count, size_t size); // uninitialised, on a 64-byte boundary; not for ax_realloc
 void* ax_realloc(void* block, size_t count, size_t size);
 void* ax_copy(const void* block, size_t count, size_t size); // NULL stays NULL
+char* ax_copy_text(const char* text);                        // likewise
 void ax_free(void* block);
 // Gives freed memory back to the system: after work that held much of it for a short time. Takes milliseconds.
 void ax_trim_memory(void);

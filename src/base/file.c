@@ -91,3 +91,11 @@ void ax_file_abandon(ax_file* file)
         unlink(file->path);
     release(file);
 }
+
+ax_status ax_file_end(ax_file* file, ax_status status, ax_error* error)
+{
+    if (status == AX_OK)
+        return ax_file_commit(file, error);
+    ax_file_abandon(file);
+    return status;
+}

@@ -18,3 +18,5 @@ ax_status ax_file_begin(ax_file* file, const char* destination, ax_error* error)
 ax_status ax_file_begin_path(ax_file* file, const char* destination, ax_error* error);
 ax_status ax_file_commit(ax_file* file, ax_error* error);
 void ax_file_abandon(ax_file* file);
+// Commits if what was to be written has come so far, else abandons. Returns `status`, or what the commit says.
+ax_status ax_file_end(ax_file* file, ax_status status, ax_error* error);

@@ -79,6 +79,11 @@ void* ax_copy(const void* block, size_t count, size_t size)
     return copy;
 }
 
+char* ax_copy_text(const char* text)
+{
+    return text ? ax_copy(text, strlen(text) + 1, 1) : NULL;
+}
+
 void ax_free(void* block)
 {
     free(block);

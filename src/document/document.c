@@ -1,7 +1,6 @@
 #include "ax/document.h"
 
 #include "ax/session.h"
-#include "base/file.h"
 #include "document/design_rows.h"
 #include "document/load.h"
 #include "document/lock.h"
@@ -27,14 +26,9 @@ ax_status ax_document_save(const char* path, const ax_design* design, ax_error* 
 {
     ax_file file;
     ax_lock* lock = NULL;
-    ax_status status = ax_file_begin_path(&file, path, error);
+    ax_status status = ax_lock_new(path, "auxshell", &file, &lock, error);
     if (status != AX_OK)
         return status;
-    status = ax_lock_take(path, "auxshell", &lock, error);
-    if (status != AX_OK) {
-        ax_file_abandon(&file);
-        return status;
-    }
     sqlite3* db = NULL;
     int result = ax_database_make(file.path, &db);
     if (result == SQLITE_OK)
@@ -43,12 +37,9 @@ ax_status ax_document_save(const char* path, const ax_design* design, ax_error* 
     snprintf(reason, sizeof reason, "%s", result == SQLITE_OK ? "" : sqlite3_errmsg(db));
     if (sqlite3_close(db) != SQLITE_OK && result == SQLITE_OK)
         result = SQLITE_ERROR;
-    if (result == SQLITE_OK)
-        status = ax_file_commit(&file, error);
-    else {
+    if (result != SQLITE_OK)
         status = ax_fail(error, AX_FAILED, "Cannot write %s: %s. Nothing was changed.", path, reason);
-        ax_file_abandon(&file);
-    }
+    status = ax_file_end(&file, status, error);
     ax_lock_release(lock);
     return status;
 }

@@ -13,14 +13,9 @@
 enum { most_checkpoints = 64, most_designs = 4, last_moments = 20, stride = 10 };
 static const int64_t most_bytes = (int64_t)256 << 20, most_old_bytes = (int64_t)64 << 20;
 
-static char* copy_text(const char* text)
-{
-    return text ? ax_copy(text, strlen(text) + 1, 1) : NULL;
-}
-
 static char* column_text(sqlite3_stmt* row, int column)
 {
-    return copy_text((const char*)sqlite3_column_text(row, column));
+    return ax_copy_text((const char*)sqlite3_column_text(row, column));
 }
 
 static bool column_whole(sqlite3_stmt* row, int column, int* value)

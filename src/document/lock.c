@@ -92,6 +92,17 @@ ax_status ax_lock_take(const char* path, const char* program, ax_lock** out, ax_
     return AX_OK;
 }
 
+ax_status ax_lock_new(const char* path, const char* program, ax_file* file, ax_lock** out, ax_error* error)
+{
+    ax_status status = ax_file_begin_path(file, path, error);
+    if (status != AX_OK)
+        return status;
+    status = ax_lock_take(path, program, out, error);
+    if (status != AX_OK)
+        ax_file_abandon(file);
+    return status;
+}
+
 void ax_lock_release(ax_lock* lock)
 {
     if (!lock)

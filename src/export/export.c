@@ -182,10 +182,7 @@ static ax_status write_jobs(int job_count, const job* jobs, ax_error* error)
         if (q.pieces[k].status != AX_OK)
             status = ax_fail(error, q.pieces[k].status, "%s", q.pieces[k].error.message);
     for (int k = 0; k < begun; ++k)
-        if (status == AX_OK)
-            status = ax_file_commit(&q.pieces[k].file, error);
-        else
-            ax_file_abandon(&q.pieces[k].file);
+        status = ax_file_end(&q.pieces[k].file, status, error);
     ax_free(q.pieces);
     return status;
 }

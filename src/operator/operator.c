@@ -15,7 +15,7 @@ const ax_operator_type* ax_operator_find(const char* name)
 char* ax_operator_path(const ax_operator_context* context, const char* name)
 {
     if (context->file)
-        return ax_copy(context->file, strlen(context->file) + 1, 1);
+        return ax_copy_text(context->file);
     const char* folder = context->folder && *context->folder ? context->folder : ".";
     size_t size = strlen(folder) + strlen(name) + 2;
     char* path = AX_NEW(char, size);

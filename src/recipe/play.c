@@ -52,7 +52,7 @@ char* ax_recipe_file(const ax_recipe* recipe, int k)
 {
     json_t* object = json_loads(ax_recipe_operator(recipe, k), 0, NULL);
     const char* name = json_string_value(json_object_get(object, "file"));
-    char* copy = name ? ax_copy(name, strlen(name) + 1, 1) : NULL;
+    char* copy = ax_copy_text(name);
     json_decref(object);
     return copy;
 }
