@@ -71,6 +71,7 @@ class Shade(CommandCase):
         self.refuse(2, "--want takes", "shade", bowl, *NOON, "--want", "0,0,1")
         self.refuse(2, "give --want", "shade", bowl, *NOON, "--arrange")
         self.refuse(2, "--date takes", "shade", bowl, "--place", "0,0", "--date", "2026-13-01")
+        self.refuse(2, "--date takes", "shade", bowl, "--place", "0,0", "--date", "2026-02-30")
         self.refuse(2, "far off", "shade", bowl, *NOON, "--want", "9999,0,1,0.5")
         self.refuse(3, "none", "shade", self.folder / "none.auxshell", *NOON)
 
