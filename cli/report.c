@@ -69,9 +69,11 @@ void report_print(const ax_design* design, FILE* out)
 {
     int count, failing = 0;
     const ax_figure* figures = ax_report_figures(&count);
-    bool simulated = design->simulated != NULL;
+    bool simulated = design->simulated != NULL, targeted = design->target.vertex_count > 0;
     for (int k = 0; k < count; ++k) {
         const ax_figure* figure = &figures[k];
+        if (figure->group == AX_GROUP_FIT && !targeted)
+            continue;
         if (k == 0 || figures[k - 1].group != figure->group)
             fprintf(out, "\n%s\n", ax_figure_group_name(figure->group));
         if (is_no_place(figure, &design->report))

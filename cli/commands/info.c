@@ -39,8 +39,11 @@ static void print_design(const char* path, const ax_design* d)
     printf("%s\n", path);
     printf("  Linkage         %d triangles, %d hinges, %d holes, border %s; lengths in %s\n", d->linkage.triangle_count,
            d->linkage.hinge_count, d->linkage.hole_count, ax_border_name(d->border), ax_unit_name(d->unit));
-    printf("  Target          %d vertices, %d faces; mended: ", d->target.vertex_count, d->target.face_count);
-    repairs_print(&d->repairs, stdout);
+    if (d->target.vertex_count) {
+        printf("  Target          %d vertices, %d faces; mended: ", d->target.vertex_count, d->target.face_count);
+        repairs_print(&d->repairs, stdout);
+    } else
+        printf("  Target          none: the form was found\n");
     if (d->projected)
         printf("  Projected       %.1f %% of the area moved, by %.4g %s at most; H is now %.4g or more\n",
                100 * d->projection.moved_area_share, d->projection.largest_move, ax_unit_name(d->unit),

@@ -25,8 +25,11 @@ static ax_status measure(search* s, double* missed, ax_error* error)
     for (int k = 0; k < s->how->wish_count && status == AX_OK; ++k) {
         double mean = ax_shade_mean(s->ground, s->opacity, &s->how->wishes[k]);
         if (isnan(mean))
-            return ax_fail(error, AX_USAGE, "Wish %d, at %.4g, %.4g, lies off the ground that is looked at.", k + 1,
-                           s->how->wishes[k].at[0], s->how->wishes[k].at[1]);
+            return ax_fail(
+                error, AX_USAGE,
+                "Wish %d, a disc of radius %.4g at %.4g, %.4g, is smaller than a cell of the ground (%.3g), or "
+                "lies off it. Give a larger disc.",
+                k + 1, s->how->wishes[k].radius, s->how->wishes[k].at[0], s->how->wishes[k].at[1], s->ground->cell);
         *missed += (mean - s->how->wishes[k].opacity) * (mean - s->how->wishes[k].opacity) / s->how->wish_count;
     }
     *missed = sqrt(*missed);
