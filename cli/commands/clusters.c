@@ -66,10 +66,9 @@ const command command_clusters = {
     .name = "clusters",
     .summary = "what it costs to cut panels in fewer sizes",
     .text = "Nearly equal panels can be cut alike: in a table, by the number of sizes, the error of edges, the gaps "
-            "that open at hinges "
-            "if every panel stays where it is, and by how much a line of panels from rim to rim grows or shrinks. A "
-            "gap must not be more than "
-            "the joint's play. export --clusters writes the sizes and which panel has which to the schedule.",
+            "that open at hinges if every panel stays where it is, and by how much a line of panels from rim to rim "
+            "grows or shrinks. A gap must not be more than the joint's play. export --clusters writes the sizes and "
+            "which panel has which to the schedule.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),

@@ -187,8 +187,7 @@ const command command_export = {
         "Writes a state of a document to a file, in the format that the file's ending names. Coordinates are those of "
         "the target, in the document's unit; cut files are drawn at true size in millimetres. What fits one sheet gets "
         "the name given; several sheets become NAME-1, NAME-2 and so on beside an overview of that name. "
-        "NAME.recipe.json "
-        "is the recipe: the steps that are applied, to be played by run.",
+        "NAME.recipe.json is the recipe: the steps that are applied, to be played by run.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),

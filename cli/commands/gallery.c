@@ -328,10 +328,9 @@ const command command_gallery = {
     .summary = "make every example again and check its figures",
     .text =
         "Makes the examples again, each from its recipe, prints their figures, and fails if one of them leaves the "
-        "bounds "
-        "that are kept beside the recipes in gallery/bounds.json. Distances are those of the simulated state from the "
-        "designed one, over the mean edge L; a load that is adopted makes what it finds the design, so that both are "
-        "one.",
+        "bounds that are kept beside the recipes in gallery/bounds.json. Distances are those of the simulated state "
+        "from the designed one, over the mean edge L; a load that is adopted makes what it finds the design, so that "
+        "both are one.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),

@@ -74,8 +74,7 @@ const command command_space = {
     .name = "space",
     .summary = "measure the room under a shell: floor, headroom, volume",
     .text = "Measures the simulated state, or the designed one where there is none: the floor, how much of it has the "
-            "headroom "
-            "asked for, the volume between ground and shell, and the shell's area. Holes count as closed.",
+            "headroom asked for, the volume between ground and shell, and the shell's area. Holes count as closed.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),

@@ -93,10 +93,8 @@ const command command_studio = {
     .name = "studio",
     .summary = "design in the browser: paint, pull, and watch it deploy",
     .text = "Serves the studio on this machine only and prints its address, which holds a secret that is new at every "
-            "start. Flat and "
-            "deployed state are solved while the hand moves.\n\nEvery gesture is saved at once. An interrupt (Ctrl-C) "
-            "ends the "
-            "studio.",
+            "start. Flat and deployed state are solved while the hand moves.\n\nEvery gesture is saved at once. An "
+            "interrupt (Ctrl-C) ends the studio.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),

@@ -129,8 +129,7 @@ ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const 
             error, AX_CANNOT_REALISE,
             "The rim gathers on one side of the curve that it slides on: the curve is longer than the open linkage can "
             "reach round, and the largest gap grew to %.0f times the mean. Shorten the curve, fix some hinges, or "
-            "raise "
-            "the scale factors.",
+            "raise the scale factors.",
             result.gap_most);
     else if (result.gap_least < -1e-9)
         status =

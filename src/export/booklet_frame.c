@@ -193,8 +193,7 @@ static void table_of_supports(ax_booklet* b)
     static const double widths[] = {18, 15, 20, 20, 18, 20, 22, 24};
     static const char heading[] = "Frame: supports";
     static const char line[] = "Places in the design's axes. Chord: to the next support; along: sum of chords; radius: "
-                               "of the circle through a "
-                               "support and its neighbours. * slides";
+                               "of the circle through a support and its neighbours. * slides";
     ax_booklet_page(b, NULL, heading, line);
     ax_table table = {.b = b,
                       .heading = heading,

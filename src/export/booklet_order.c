@@ -358,8 +358,7 @@ void ax_booklet_order(ax_booklet* b)
     const char* line =
         pieces ? "Each piece is joined to those before it at the seams that carry the same number on both sides."
                : "Lay the rows out on the flat floor. Each row is joined along itself, and to the rows before it; "
-                 "every panel hangs on one "
-                 "that is there.";
+                 "every panel hangs on one that is there.";
     ax_booklet_page(b, "Order of joining", "Order of joining", line);
     if (pieces && b->assembly.step_count == 1) {
         ax_booklet_text(b, AX_BOOKLET_MARGIN, AX_BOOKLET_TOP + 8, 4, AX_LEFT,

@@ -116,8 +116,7 @@ static void explain_misfit(ax_screen* screen, const ax_mesh* mesh, const ax_targ
     }
     say(screen,
         "Laid flat it needs scale factors in a ratio of %.3f, more than the %.3f that the band %g to %g allows; they "
-        "are "
-        "largest near ",
+        "are largest near ",
         fit->ratio, options->scale_hi / options->scale_lo, options->scale_lo, options->scale_hi);
     say_place(screen, mesh->positions[largest]);
     say(screen, " and smallest near ");

@@ -23,8 +23,7 @@ const ax_constraint_type ax_constraint_fairness = {
     .doc = "Pulls a hinge to the middle between its neighbours on a kagome line (three points), or four to even steps "
            "and curvature.",
     .reference = "Welch and Witkin 1994, Free-form shape design using triangulated surfaces; Moreton and Sequin 1992, "
-                 "Functional "
-                 "optimization for fair surface design (variation of curvature)",
+                 "Functional optimization for fair surface design (variation of curvature)",
     .pattern = AX_ROWS_SUM,
     .least_points = 3,
     .most_points = 4,

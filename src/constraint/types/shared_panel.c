@@ -130,10 +130,8 @@ static void project(const ax_lane* restrict block, const ax_place* place, int po
 const ax_constraint_type ax_constraint_shared_panel = {
     .name = "shared_panel",
     .doc = "Keeps the flat and the deployed copy of a panel congruent and equilateral, or nearly so: edges 0-1, 2-3, "
-           "4-5 are "
-           "the flat copy in the plane, counter-clockwise, 6-7, 8-9, 10-11 the same edges deployed (nearest if "
-           "equilateral; "
-           "with skew the turns are those of the nearest equilateral panel).",
+           "4-5 are the flat copy in the plane, counter-clockwise, 6-7, 8-9, 10-11 the same edges deployed (nearest if "
+           "equilateral; with skew the turns are those of the nearest equilateral panel).",
     .reference = "Bouaziz et al. 2012, Shape-Up (similar); Konakovic-Lukovic et al. 2018, section 5 (shared lengths)",
     .pattern = AX_ROWS_EDGES,
     .least_points = 12,

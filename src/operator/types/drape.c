@@ -37,8 +37,7 @@ const ax_operator_type ax_operator_drape = {
     .name = "drape",
     .title = "Drape",
     .doc = "Paints scale factors with which the sheet hangs from its rim like a film: every hole open and every panel "
-           "pulled, "
-           "between lobes and round re-entrant corners too. A start for painting within a given rim.",
+           "pulled, between lobes and round re-entrant corners too. A start for painting within a given rim.",
     .reference = "Schek 1974, The force density method",
     .group = "scale",
     .fields = fields,
