@@ -32,18 +32,14 @@ typedef struct ax_session_start {
 } ax_session_start;
 ax_status ax_session_create(const char* path, const ax_session_start* start, const ax_progress* progress,
                             ax_session** out, ax_error* error);
-// The same from a finished design: a document without steps, which goes on from it.
-ax_status ax_session_create_from_design(const char* path, const ax_design* design, const char* program,
-                                        ax_session** out, ax_error* error);
 
 // Opens a document. With `edit`, it is locked for other programs until it is closed; where that cannot be (another program edits
 // it, the file or its folder cannot be written), it is opened read-only all the same, and ax_session_read_only says why.
-// AX_BAD_INPUT as ax_document_load. Progress matters only where the present form has to be computed again.
+// A document made by ax_document_save goes on from its design. AX_BAD_INPUT as ax_document_load. Progress matters only where the present form has to be computed again.
 ax_status ax_session_open(const char* path, bool edit, const char* program, const ax_progress* progress,
                           ax_session** out, ax_error* error);
 void ax_session_close(ax_session* session); // NULL allowed
 
-const char* ax_session_path(const ax_session* session);
 // Why it cannot be changed, a sentence: "roof.auxshell is open in auxshell studio (process 1234) ...". NULL: it can.
 const char* ax_session_read_only(const ax_session* session);
 

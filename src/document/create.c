@@ -1,7 +1,6 @@
-// New documents: from steps, from a design, and copies.
+// New documents: from steps, and copies.
 #include "document/session.h"
 
-#include "document/design_rows.h"
 #include "document/sql.h"
 
 #include <stdlib.h>
@@ -68,20 +67,18 @@ static char* absolute_folder(const char* folder, const char* document)
     return result;
 }
 
-// Makes the database of a new document beside its place, lets `fill` do its work on it, and puts it there.
-static ax_status create(const char* path, const char* program, const char* folder,
-                        ax_status (*fill)(ax_session* s, const void* context, const ax_progress* progress,
-                                          ax_error* error),
-                        const void* context, const ax_progress* progress, ax_session** out, ax_error* error)
+// Makes the database of a new document beside its place, plays the steps into it, and puts it there.
+ax_status ax_session_create(const char* path, const ax_session_start* start, const ax_progress* progress,
+                            ax_session** out, ax_error* error)
 {
     *out = NULL;
     ax_file file;
     ax_lock* lock = NULL;
-    ax_status status = ax_lock_new(path, program, &file, &lock, error);
+    ax_status status = ax_lock_new(path, start->program, &file, &lock, error);
     if (status != AX_OK)
         return status;
     ax_session* s = ax_session_make(path);
-    char* stored = absolute_folder(folder, path);
+    char* stored = absolute_folder(start->folder, path);
     s->folder = *stored ? ax_copy_text(stored) : ax_folder_of(path);
     s->recipe = ax_recipe_make();
     s->database.schema = &ax_document_schema;
@@ -95,8 +92,12 @@ static ax_status create(const char* path, const char* program, const char* folde
     if (result != SQLITE_OK)
         status = ax_fail(error, AX_FAILED, "Cannot write %s: %s. Nothing was changed.", path,
                          sqlite3_errmsg(s->database.file));
+    if (start->session)
+        *start->session = s;
     if (status == AX_OK)
-        status = fill(s, context, progress, error);
+        status = play_start(s, start, progress, error);
+    if (start->session)
+        *start->session = NULL;
     ax_session_close(s);
     ax_free(stored);
     status = ax_file_end(&file, status, error);
@@ -104,42 +105,6 @@ static ax_status create(const char* path, const char* program, const char* folde
         return ax_session_open_locked(path, lock, NULL, progress, out, error);
     ax_lock_release(lock);
     return status;
-}
-
-static ax_status fill_from_recipe(ax_session* s, const void* context, const ax_progress* progress, ax_error* error)
-{
-    const ax_session_start* start = context;
-    if (start->session)
-        *start->session = s;
-    ax_status status = play_start(s, start, progress, error);
-    if (start->session)
-        *start->session = NULL;
-    return status;
-}
-
-ax_status ax_session_create(const char* path, const ax_session_start* start, const ax_progress* progress,
-                            ax_session** out, ax_error* error)
-{
-    return create(path, start->program, start->folder, fill_from_recipe, start, progress, out, error);
-}
-
-static ax_status fill_from_design(ax_session* s, const void* context, const ax_progress* progress, ax_error* error)
-{
-    (void)progress;
-    sqlite3* db = s->database.file;
-    ax_present beginning = {0};
-    int result = ax_saving_begin(s);
-    if (result == SQLITE_OK)
-        result = ax_design_store(db, 0, context);
-    if (result == SQLITE_OK)
-        result = ax_history_add_moment(db, &beginning, "Design", ax_saving_now());
-    return ax_saving_end(s, result, error);
-}
-
-ax_status ax_session_create_from_design(const char* path, const ax_design* design, const char* program,
-                                        ax_session** out, ax_error* error)
-{
-    return create(path, program, NULL, fill_from_design, design, NULL, out, error);
 }
 
 ax_status ax_session_copy(ax_session* s, const char* path, ax_error* error)

@@ -127,11 +127,6 @@ ax_status ax_session_open(const char* path, bool edit, const char* program, cons
 
 // ---- looking ----------------------------------------------------------------------------------------------------------------
 
-const char* ax_session_path(const ax_session* s)
-{
-    return s->path;
-}
-
 const char* ax_session_read_only(const ax_session* s)
 {
     return s->read_only;

@@ -168,7 +168,8 @@ void ax_booklet_dots(ax_booklet* b, double radius)
     cairo_set_line_cap(b->cairo, CAIRO_LINE_CAP_BUTT);
 }
 
-double ax_booklet_name_size(const double corners[3][2], int letters)
+// Size of the letters with which a name of this length would fit a triangle; below AX_BOOKLET_LEGIBLE: too small.
+static double name_size(const double corners[3][2], int letters)
 {
     double around = 0, twice = fabs(ax_orient2(corners[0], corners[1], corners[2]));
     for (int k = 0; k < 3; ++k)
@@ -198,7 +199,7 @@ void ax_booklet_panel(ax_booklet* b, int panel, const double corners[3][2], ax_p
     memcpy(drawn->corners, corners, sizeof drawn->corners);
     for (int k = 0; k < 3; ++k)
         drawn->fill[k] = (unsigned char)lround(255 * (shade * tint[k] * (1 - pale) + pale));
-    double size = ax_booklet_name_size(corners, (int)strlen(p->name));
+    double size = name_size(corners, (int)strlen(p->name));
     if (style == AX_PANEL_ALWAYS_NAMED)
         size = fmax(size, AX_BOOKLET_LEGIBLE + 0.01);
     size = fmin(4, floor(10 * size) / 10); // a few sizes only: cairo makes a font of each
@@ -342,7 +343,7 @@ double ax_booklet_naming_scale(const ax_booklet* b, double size)
         double corners[3][2];
         for (int k = 0; k < 3; ++k)
             ax_booklet_flat(b, b->design->linkage.triangles[t][k], 1, corners[k]);
-        sizes[t] = ax_booklet_name_size((const double(*)[2])corners, (int)strlen(b->plan->panels[t].name));
+        sizes[t] = name_size((const double(*)[2])corners, (int)strlen(b->plan->panels[t].name));
     }
     qsort(sizes, (size_t)n, sizeof *sizes, ascending);
     double tenth = sizes[n / 10];

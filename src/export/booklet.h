@@ -86,8 +86,7 @@ void ax_booklet_flush(ax_booklet* b);
 // Dots, added to the path, and drawn.
 void ax_booklet_dot(ax_booklet* b, const double at[2]);
 void ax_booklet_dots(ax_booklet* b, double radius);
-// Size of the letters with which a name of this length would fit a triangle; below AX_BOOKLET_LEGIBLE: too small.
-double ax_booklet_name_size(const double corners[3][2], int letters);
+// Smaller letters are not written.
 #define AX_BOOKLET_LEGIBLE 1.7 // mm, of the font: about 5 pt
 
 // The scale at which all but a tenth of the names have letters of `size` in the flat state.

@@ -38,6 +38,3 @@ typedef struct ax_polyline_point {
     double distance;
 } ax_polyline_point;
 ax_polyline_point ax_polyline_find(const ax_polyline* line, const double x[3]);
-double ax_polyline_length(const ax_polyline* line);
-// Even-odd rule in the xy-plane, in logarithmic time on average.
-bool ax_polyline_contains(const ax_polyline* line, const double x[2]);

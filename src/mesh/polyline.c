@@ -5,7 +5,6 @@
 
 struct ax_polyline {
     int count;
-    double length;
     double (*points)[3];     // count + 1: the first again at the end
     double (*directions)[3]; // mean direction at each point, the first again at the end
     ax_box_tree tree;        // over the segments
@@ -35,7 +34,6 @@ ax_polyline* ax_polyline_make(int count, const double (*points)[3])
         const double *a = line->points[i], *b = line->points[i + 1];
         double direction[3];
         ax_sub3(b, a, direction);
-        line->length += ax_norm3(direction);
         normalise(direction);
         for (int d = 0; d < 3; ++d) {
             line->directions[i][d] += direction[d];
@@ -63,11 +61,6 @@ void ax_polyline_free(ax_polyline* line)
     ax_free(line->directions);
     ax_box_tree_free(&line->tree);
     ax_free(line);
-}
-
-double ax_polyline_length(const ax_polyline* line)
-{
-    return line->length;
 }
 
 typedef struct search {
@@ -117,36 +110,4 @@ ax_polyline_point ax_polyline_find(const ax_polyline* line, const double x[3])
         ax_sub3(line->points[s.segment + 1], line->points[s.segment], result.tangent);
     normalise(result.tangent);
     return result;
-}
-
-// Does the ray from x towards +x cross the segment? Half-open in y, so that a shared end point counts once.
-static bool crosses(const double a[3], const double b[3], const double x[2])
-{
-    if ((a[1] > x[1]) == (b[1] > x[1]))
-        return false;
-    double side = ax_orient2(a, b, x);
-    return b[1] > a[1] ? side > 0 : side < 0;
-}
-
-bool ax_polyline_contains(const ax_polyline* line, const double x[2])
-{
-    double local[2] = {x[0] - line->tree.centre[0], x[1] - line->tree.centre[1]};
-    ax_box_link stack[ax_box_tree_depth + 1];
-    int depth = 0;
-    bool inside = false;
-    stack[depth++] = line->tree.root;
-    while (depth) {
-        ax_box_link at = stack[--depth];
-        for (int i = 0; i < at.count; ++i) {
-            int segment = line->tree.order[at.first + i];
-            inside ^= crosses(line->points[segment], line->points[segment + 1], x);
-        }
-        if (at.count)
-            continue;
-        const ax_box_node* node = line->tree.nodes + at.first;
-        for (int side = 0; side < 2; ++side)
-            if (node->lo[side][1] <= local[1] && local[1] <= node->hi[side][1] && local[0] <= node->hi[side][0])
-                stack[depth++] = node->link[side];
-    }
-    return inside;
 }

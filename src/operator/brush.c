@@ -81,7 +81,8 @@ static void forget_beyond(double radius, int count, double* distance)
             distance[k] = INFINITY;
 }
 
-void ax_stroke_on_sheet(const ax_stroke* stroke, const ax_sheet* sheet, double radius, double* distance)
+// Distance of every panel's centre from the stroke and its copies, on the sheet. Infinite beyond `radius`.
+static void stroke_on_sheet(const ax_stroke* stroke, const ax_sheet* sheet, double radius, double* distance)
 {
     for (int t = 0; t < sheet->count; ++t)
         distance[t] = INFINITY;
@@ -311,7 +312,7 @@ ax_status ax_brush_take(const ax_operator_context* context, const ax_brush* brus
         ax_form_view view = ax_form_look(*context->form);
         ax_stroke_on_deployed(&stroke, sheet, &view, brush->radius, *distance);
     } else
-        ax_stroke_on_sheet(&stroke, sheet, brush->radius, *distance);
+        stroke_on_sheet(&stroke, sheet, brush->radius, *distance);
     for (int t = 0; t < sheet->count; ++t)
         (*distance)[t] = sheet->chosen[t] ? (*distance)[t] / brush->radius : INFINITY;
     return AX_OK;

@@ -12,10 +12,8 @@ typedef struct ax_stroke {
     double mirror_angle; // radians
 } ax_stroke;
 
-// Distance of every panel's centre from the stroke and its copies, on the sheet. Infinite beyond `radius`.
-void ax_stroke_on_sheet(const ax_stroke* stroke, const ax_sheet* sheet, double radius, double* distance);
-// The same along the deployed surface, holes filled: first-order fast marching (Kimmel and Sethian 1998) from the hinges beside the
-// stroke.
+// Distance of every panel's centre from the stroke and its copies along the deployed surface, holes filled: first-order fast marching (Kimmel
+// and Sethian 1998) from the hinges beside the stroke. Infinite beyond `radius`.
 void ax_stroke_on_deployed(const ax_stroke* stroke, const ax_sheet* sheet, const ax_form_view* view, double radius,
                            double* distance);
 

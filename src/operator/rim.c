@@ -72,7 +72,8 @@ void ax_rim_take_out(ax_rim* rim, int count, const int* hinges)
     rim->count = parts;
 }
 
-ax_rim_part* ax_rim_part_of(ax_rim* rim, int hinge)
+// The part that holds a hinge, NULL if none does.
+static ax_rim_part* part_of(ax_rim* rim, int hinge)
 {
     for (int p = 0; p < rim->count; ++p)
         if (is_among(hinge, rim->parts[p].count, rim->parts[p].hinges))
@@ -80,7 +81,7 @@ ax_rim_part* ax_rim_part_of(ax_rim* rim, int hinge)
     return NULL;
 }
 
-void ax_rim_set_points(ax_rim_part* part, int count, const double (*points)[3])
+static void set_points(ax_rim_part* part, int count, const double (*points)[3])
 {
     const double(*copy)[3] = ax_copy(points, (size_t)count, sizeof *points);
     ax_free((void*)part->curve.points);
@@ -159,7 +160,7 @@ static ax_status edit_points(ax_rim_part* part, const ax_control* c, ax_control_
         memmove(here, here + 1, beyond - sizeof *points);
     else
         memcpy(*here, c->at, sizeof *here);
-    ax_rim_set_points(part, n + (edit == AX_CONTROL_ADD) - (edit == AX_CONTROL_REMOVE), (const double(*)[3])points);
+    set_points(part, n + (edit == AX_CONTROL_ADD) - (edit == AX_CONTROL_REMOVE), (const double(*)[3])points);
     ax_free(points);
     return AX_OK;
 }
@@ -172,7 +173,7 @@ ax_status ax_rim_control(const ax_operator_context* context, const ax_control* c
     if (status != AX_OK)
         return status;
     ax_rim rim = ax_rim_copy(*context->form);
-    ax_rim_part* part = ax_rim_part_of(&rim, hinges[0]);
+    ax_rim_part* part = part_of(&rim, hinges[0]);
     bool controlled = part && part->kind == AX_RIM_SLIDE &&
                       (part->curve.kind == AX_CURVE_SPLINE || part->curve.kind == AX_CURVE_POLYLINE);
     status = controlled ? edit_points(part, control, edit, error)

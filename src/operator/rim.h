@@ -13,9 +13,6 @@ ax_rim ax_rim_copy(const ax_form* form);
 void ax_rim_free(ax_rim* rim);
 // Hinges that come to belong to another part leave those they are in; parts that lose all are gone.
 void ax_rim_take_out(ax_rim* rim, int count, const int* hinges);
-// The part that holds a hinge, NULL if none does.
-ax_rim_part* ax_rim_part_of(ax_rim* rim, int hinge);
-void ax_rim_set_points(ax_rim_part* part, int count, const double (*points)[3]);
 
 // Hinges of the rim by words, in their order round it; AX_BAD_INPUT if one is not on the rim. Owned by the caller.
 ax_status ax_rim_hinges(const ax_operator_context* context, const char* words, int** hinges, int* count,

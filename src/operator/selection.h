@@ -15,6 +15,7 @@ void ax_hinges_add(ax_hinges* set, int hinge);
 
 // The middle of the hinges' extents on the sheet.
 void ax_sheet_middle(const ax_form_view* view, double middle[2]);
+double ax_angle_about(const double middle[2], const double x[2]); // degrees, 0 to 360
 // The rim counter-clockwise on the sheet, from the hinge at the smallest angle from 0 about the sheet's middle.
 void ax_select_rim(const ax_form_view* view, ax_hinges* set);
 // The kagome line through two hinges, from rim to rim; false if no line runs through both.
@@ -28,7 +29,8 @@ void ax_select_near(const ax_form_view* view, int count, const double (*points)[
                     ax_hinges* set);
 
 // Places in `rim` (an order from ax_select_rim) at which the rim turns a corner, in order; *corners owned by the caller. 0 if the
-// rim is round or has more than 12.
+// rim is round or has more than AX_CORNERS_MOST.
+enum { AX_CORNERS_MOST = 12 };
 int ax_select_corners(const ax_form_view* view, int count, const int* rim, int** corners);
 
 // Names that users give to selections and constraints: 1 to 48 letters, digits, "-", "_" or ".", the first a letter.

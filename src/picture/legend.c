@@ -268,7 +268,7 @@ ax_scale_bar ax_scale_bar_make(double unit_pixels, double longest)
     return (ax_scale_bar){length, length * unit_pixels};
 }
 
-ax_rectangle ax_scale_bar_place(const ax_scale_bar* bar, int width, int height, double unit)
+static ax_rectangle scale_bar_place(const ax_scale_bar* bar, int width, int height, double unit)
 {
     return (ax_rectangle){width - 24 * unit - bar->pixels, height - 48 * unit, bar->pixels, 24 * unit};
 }
@@ -283,7 +283,7 @@ static void write_length(char* text, size_t size, double length, const char* uni
 
 void ax_scale_bar_draw(cairo_t* cr, const ax_scale_bar* bar, const char* unit_name, int width, int height, double unit)
 {
-    ax_rectangle at = ax_scale_bar_place(bar, width, height, unit);
+    ax_rectangle at = scale_bar_place(bar, width, height, unit);
     char text[48];
     write_length(text, sizeof text, bar->length, unit_name);
     cairo_save(cr);

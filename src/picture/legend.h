@@ -35,7 +35,6 @@ typedef struct ax_scale_bar {
     double length, pixels; // in the document's unit, in the picture
 } ax_scale_bar;
 ax_scale_bar ax_scale_bar_make(double unit_pixels, double longest);
-ax_rectangle ax_scale_bar_place(const ax_scale_bar* bar, int width, int height, double unit);
 void ax_scale_bar_draw(cairo_t* cr, const ax_scale_bar* bar, const char* unit_name, int width, int height, double unit);
 // The same corner in a perspective view, where no bar holds: the distance of the ground's grid lines.
 void ax_grid_note_draw(cairo_t* cr, double distance, const char* unit_name, int width, int height, double unit);

@@ -8,7 +8,8 @@
 static const double LARGEST = 1e9; // of coordinates: squares and cubes stay finite
 enum { MOST_POINTS = 1000000, LONGEST_TEXT = 65536, WIDEST = 16 };
 
-bool ax_argument_is_common(const char* key)
+// Members that every operator may have besides its fields: "op", which names it, and "note", words of its author.
+static bool is_common(const char* key)
 {
     return strcmp(key, "op") == 0 || strcmp(key, "note") == 0;
 }
@@ -269,7 +270,7 @@ static ax_status read_members(json_t* object, ax_arguments* a, ax_json_path* at,
         if (strcmp(key, "note") == 0 && !json_is_string(value))
             return ax_fail(error, AX_BAD_INPUT, "\"note\" takes a text.");
         at->key = !field;
-        if (!field && !ax_argument_is_common(key))
+        if (!field && !is_common(key))
             return unknown_field(a->type, key, error);
         ax_status status = field ? read_field(field, value, a, at, error) : AX_OK;
         if (status != AX_OK)

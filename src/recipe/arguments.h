@@ -18,6 +18,3 @@ typedef struct ax_arguments {
 // message lacks the place, which is *at, relative to the object.
 ax_status ax_arguments_read(json_t* object, ax_arguments* out, ax_json_path* at, ax_error* error);
 void ax_arguments_free(ax_arguments* arguments);
-
-// Members that every operator may have besides its fields: "op", which names it, and "note", words of its author.
-bool ax_argument_is_common(const char* key);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void ax_text_add(ax_text* text, const char* bytes, size_t size)
+static void add(ax_text* text, const char* bytes, size_t size)
 {
     if (text->size + size + 1 > text->capacity) {
         text->capacity = 2 * (text->size + size + 1);
@@ -17,7 +17,7 @@ void ax_text_add(ax_text* text, const char* bytes, size_t size)
 
 void ax_text_say(ax_text* text, const char* words)
 {
-    ax_text_add(text, words, strlen(words));
+    add(text, words, strlen(words));
 }
 
 static void add_real(ax_text* text, double value)
