@@ -322,18 +322,24 @@ static void print_help_row(const char* name, const char* text, FILE* out)
     print_wrapped(out, COLUMN, COLUMN, text);
 }
 
-void command_print_help(const command* c, FILE* out)
+static void print_options(const command* c, list_row row, FILE* out)
 {
     char heading[160], words[1024];
+    for (int k = 0; k < c->option_count; ++k) {
+        option_heading(&c->options[k], heading, sizeof heading);
+        option_words(c, &c->options[k], words, sizeof words);
+        row(heading, words, out);
+    }
+}
+
+void command_print_help(const command* c, FILE* out)
+{
+    char words[1024];
     usage_words(c, words, sizeof words);
     fprintf(out, "usage: %s\n\n", words);
     print_wrapped(out, 0, 0, c->text);
     putc('\n', out);
-    for (int k = 0; k < c->option_count; ++k) {
-        option_heading(&c->options[k], heading, sizeof heading);
-        option_words(c, &c->options[k], words, sizeof words);
-        print_help_row(heading, words, out);
-    }
+    print_options(c, print_help_row, out);
     if (c->list) {
         fprintf(out, "\n%s:\n", c->list_title);
         c->list(print_help_row, out);
@@ -357,14 +363,10 @@ static void print_reference_row(const char* name, const char* text, FILE* out)
 
 void command_print_reference(const command* c, FILE* out)
 {
-    char heading[160], words[1024];
+    char words[1024];
     usage_words(c, words, sizeof words);
     fprintf(out, "## %s\n\n    %s\n\n%s\n\n| | |\n|---|---|\n", c->name, words, c->text);
-    for (int k = 0; k < c->option_count; ++k) {
-        option_heading(&c->options[k], heading, sizeof heading);
-        option_words(c, &c->options[k], words, sizeof words);
-        print_reference_row(heading, words, out);
-    }
+    print_options(c, print_reference_row, out);
     if (c->list) {
         fprintf(out, "\n%s:\n\n| | |\n|---|---|\n", c->list_title);
         c->list(print_reference_row, out);

@@ -47,6 +47,13 @@ typedef struct command_option {
         .offset = offsetof(arguments, document)                                                                        \
     }
 
+// The document that a command writes: `out` of their arguments.
+#define OPTION_OUT(arguments)                                                                                          \
+    {                                                                                                                  \
+        .name = "-o", .value = "P.auxshell", .text = "the document to write", .kind = OPTION_TEXT, .required = true,   \
+        .offset = offsetof(arguments, out)                                                                             \
+    }
+
 // How commands stand a mesh file up: an int of their arguments.
 #define OPTION_UP(arguments, member)                                                                                   \
     {                                                                                                                  \

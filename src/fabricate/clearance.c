@@ -211,7 +211,7 @@ static void bound_panels(const ax_work* w, const double (*places)[3], double (*c
         radius[t] = 0;
         for (int k = 0; k < 3; ++k)
             radius[t] = fmax(radius[t], ax_distance3(centre[t], places[corner[k]]));
-        radius[t] += ax_outreach(w) + w->plan->material.thickness;
+        radius[t] += ax_panel_reach(&w->rule, w->plan->kerf / 2) + w->plan->material.thickness;
     }
 }
 

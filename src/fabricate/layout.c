@@ -5,13 +5,6 @@
 
 #include <stdlib.h>
 
-double ax_outreach(const ax_work* w)
-{
-    const ax_panel_rule* r = &w->rule;
-    // a plain corner of 60 degrees moves out by twice what its edges do; sharper ones are rare
-    return fmax(0, r->radius - fmin(r->ear, r->radius + r->inset)) + 2.5 * w->plan->kerf / 2;
-}
-
 static void place(ax_cut_panel* p, int sheet, const ax_motion* m, double x, double y)
 {
     p->sheet = sheet;

@@ -9,6 +9,12 @@ static void direction(const double from[2], const double to[2], double out[2])
         out[d] = (to[d] - from[d]) / length;
 }
 
+double ax_panel_reach(const ax_panel_rule* rule, double grow)
+{
+    // a plain corner of 60 degrees moves out by twice what its edges do; sharper ones are rare
+    return fmax(0, rule->radius - fmin(rule->ear, rule->radius + rule->inset)) + 2.5 * grow;
+}
+
 ax_panel_outline ax_panel_make(const ax_panel_rule* rule, const double* const corner[3], double grow)
 {
     ax_panel_outline o = {.radius = rule->radius > 0 ? rule->radius + grow : 0,

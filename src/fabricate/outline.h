@@ -21,6 +21,8 @@ typedef struct ax_panel_outline {
 
 // `corner`: the triangle, counter-clockwise.
 ax_panel_outline ax_panel_make(const ax_panel_rule* rule, const double* const corner[3], double grow);
+// How far outlines reach beyond the hinges, mm.
+double ax_panel_reach(const ax_panel_rule* rule, double grow);
 
 // Appends the outline (counter-clockwise) as a path, and the holes (clockwise) as one each, moved.
 void ax_panel_put_outline(ax_plan_builder* b, const ax_panel_outline* outline, const ax_motion* motion);

@@ -64,7 +64,7 @@ bool ax_turn_to_fit(const ax_work* w, int count, const int* panels, const double
         memcpy(points[i], w->flat[w->linkage->triangles[panels[i / 3]][i % 3]], sizeof *points);
     int n = convex_hull(3 * count, points, hull);
     bool fits = false;
-    double best = INFINITY, lo[2], hi[2], edge = ax_outreach(w);
+    double best = INFINITY, lo[2], hi[2], edge = ax_panel_reach(&w->rule, w->plan->kerf / 2);
     // as it is, if it fits; else by whole degrees, whichever leaves the lowest strip
     for (int degree = 0; degree < 180 && !(fits && degree == 1); ++degree) {
         double angle = degree * AX_PI / 180;

@@ -35,8 +35,6 @@ ax_status ax_cut_pieces(ax_work* w, const double room[2], int* count, ax_error* 
 // The motion that turns a set of panels so that it lies in [0, width] x [0, height] within `room`; false if there is none.
 bool ax_turn_to_fit(const ax_work* w, int count, const int* panels, const double room[2], ax_motion* motion,
                     double size[2]);
-// How far outlines reach beyond the hinges, mm.
-double ax_outreach(const ax_work* w);
 
 // clearance.c: least distance of two panels of one layer in the flat state, mm, as far as it is under `within`.
 double ax_flat_clearance(const ax_work* w, double within);

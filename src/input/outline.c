@@ -64,14 +64,6 @@ ax_status ax_outline_read(const char* path, double unit, double tolerance, ax_ou
     return status;
 }
 
-void ax_outline_free(ax_outline* outline)
-{
-    for (int c = 0; c < outline->count; ++c)
-        ax_free(outline->curves[c].points);
-    ax_free(outline->curves);
-    *outline = (ax_outline){0};
-}
-
 // Area within a closed curve, length of an open one.
 static double size_of(const ax_outline_curve* curve)
 {

@@ -18,6 +18,14 @@ ax_pen ax_pen_make(const char* path, double tolerance, ax_error* error)
     return (ax_pen){.path = path, .tolerance = tolerance, .matrix = {1, 0, 0, 1, 0, 0}, .line = 1, .error = error};
 }
 
+void ax_outline_free(ax_outline* outline)
+{
+    for (int c = 0; c < outline->count; ++c)
+        ax_free(outline->curves[c].points);
+    ax_free(outline->curves);
+    *outline = (ax_outline){0};
+}
+
 void ax_pen_free(ax_pen* pen)
 {
     ax_outline_free(&pen->outline);
