@@ -359,7 +359,12 @@ static bool report_progress(void* context, const char* stage, double fraction, d
         d->rested = false;                          // it was shown as moving
         if (!d->opened && d->opener && !d->watched) // once: who looks at something else meanwhile is left alone
             hub_show_making(d->hub, d->opener, d);
-        d->watched = true;
+        if (!d->watched) {
+            hub_lock(d->hub);
+            d->watched = true;
+            pthread_cond_broadcast(&d->open);
+            hub_unlock(d->hub);
+        }
     }
     if (now - d->job_start > progress_seconds && now - d->progressed > 0.1) {
         d->progressed = now;
@@ -469,10 +474,13 @@ void desk_begin_edit(desk* d)
 
 static void start_moving(desk* d)
 {
+    bool begins = !d->moving;
     d->moving = true;
     d->still = 0;
     d->move_start = ax_seconds();
     d->rested = false;
+    if (begins)
+        post_status(d, solver_word(d));
 }
 
 // True when the hand has moved on, or something is to be done: what is solved now is not waited for.
@@ -766,6 +774,9 @@ static void* work(void* context)
     }
     if (status != AX_OK && d->opener)
         hub_show_before(d->hub, d->opener, d);
+    else if (status != AX_OK) // pages may have come meanwhile
+        hub_tell(d->hub, d, 0,
+                 json_pack("{s:s, s:s, s:s}", "event", "closed", "document", d->id, "message", error.message));
     hub_lock(d->hub);
     d->opened = status == AX_OK;
     d->fault = error;
@@ -813,11 +824,11 @@ desk* desk_open(hub* h, const char* id, desk_source source, int client, int re)
 ax_status desk_wait(desk* d, ax_error* error)
 {
     hub_lock(d->hub);
-    while (!d->opened && !d->ended)
+    while (!d->opened && !d->ended && !d->watched)
         pthread_cond_wait(&d->open, hub_mutex(d->hub));
-    if (!d->opened && error)
+    if (d->ended && error)
         *error = d->fault;
-    ax_status status = d->opened ? AX_OK : d->fault.status;
+    ax_status status = d->ended ? d->fault.status : AX_OK;
     hub_unlock(d->hub);
     return status;
 }

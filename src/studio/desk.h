@@ -17,7 +17,7 @@ typedef struct desk_source {
 // Opens a document on a new thread. When it is open, `client` (if any) is shown it and its command `re` answered; if it cannot be,
 // the command is refused and the desk ends. `id` is copied.
 desk* desk_open(hub* h, const char* id, desk_source source, int client, int re);
-// Waits until it is open. AX_OK, or what came instead.
+// Waits until it is open, or its first state is there to be watched while it is made. AX_OK, or what came instead.
 ax_status desk_wait(desk* d, ax_error* error);
 // Ends long work and waits for the thread; without the lock held. `discard`: a document without a name is not kept.
 void desk_close(desk* d, bool discard);

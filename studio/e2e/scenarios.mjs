@@ -231,6 +231,48 @@ export const scenarios = {
         });
     },
 
+    async "a large recipe is served at once and watched; cancelled, the page says so"(browser) {
+        const studio = new Studio();
+        writeFileSync(join(studio.folder, "shell.json"), JSON.stringify({ format: "auxshell-recipe", version: 1, operators: [{ ...circle, triangles: 8000 }, ...bowl.slice(1)] }));
+        try {
+            const began = Date.now();
+            await studio.start("shell.json");
+            assert.ok(Date.now() - began < 5000, `its address came after ${Date.now() - began} ms`);
+            const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+            const page = await context.newPage();
+            await page.goto(studio.address);
+            await page.waitForFunction(() => globalThis.auxshell?.shell()?.linkage.panels > 7000, null, { timeout: 30000 });
+            assert.ok(await page.evaluate(() => auxshell.session.documentState.value === null && auxshell.session.making.value), "it is not made yet");
+            await page.getByRole("button", { name: "Cancel", exact: true }).click();
+            await page.getByRole("alert").getByRole("button", { name: "Start page" }).waitFor({ timeout: 30000 });
+            await context.close();
+        } finally {
+            await studio.remove();
+        }
+    },
+
+    async "the legend tells the range that the check judges; the curve of a rim follows its fields"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            const [told, judged] = await page.evaluate(() => [document.querySelector(".legend .range").textContent, auxshell.session.report.value.checks.find((c) => c.key === "scale").answer]);
+            assert.equal(told, judged);
+            await hand.key("c");
+            const drawn = () => page.evaluate(async () => {
+                await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+                return auxshell.stage.value.overlay.toDataURL();
+            });
+            const circled = await drawn();
+            await page.getByLabel("Rim", { exact: true }).selectOption("rim_free");
+            const free = await drawn();
+            assert.notEqual(free, circled, "a free rim has no curve");
+            await page.getByLabel("Rim", { exact: true }).selectOption("rim_circle");
+            assert.equal(await drawn(), circled);
+            await page.getByLabel("Radius", { exact: true }).last().fill("6");
+            await page.keyboard.press("Enter");
+            assert.notEqual(await drawn(), circled, "the circle is as wide as its field says");
+        });
+    },
+
     async "a surface that cannot deploy is said so, and why"(browser) {
         await withStudio(browser, [circle], async (hand) => {
             await hand.drop("saddle.obj", readFileSync(join(surfaces, "saddle.obj")));

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import * as THREE from "three";
 import { boundsOf, gather, loopCount, medianEdge } from "../src/panels/linkage";
 import { hingeWords, hingesOf, insidePolygon, kagomeLine, panelOf, panelsAround, shortestWay, straightOn } from "../src/panels/lines";
-import { distances, hingeNormals, leastAtCorners, panelNormals, rangeOf } from "../src/panels/measures";
+import { awayFromRim, distances, hingeNormals, leastAtCorners, panelNormals, rangeOf } from "../src/panels/measures";
 import { Skin } from "../src/scene/skin";
 import { patch } from "./kagome";
 
@@ -33,6 +33,28 @@ describe("a linkage", () => {
         const corners = new Float32Array(9 * linkage.panels);
         gather(linkage.triangles, places, corners);
         expect([...corners.slice(0, 3)]).toEqual([...places.slice(3 * linkage.triangles[0], 3 * linkage.triangles[0] + 3)]);
+    });
+});
+
+describe("the range that is told", () => {
+    it("leaves out panels at the rim and beside those", () => {
+        const { linkage } = patch(10);
+        const judged = awayFromRim(linkage);
+        const values = new Float32Array(linkage.panels).fill(1.5);
+        let inside = 0;
+        for (let t = 0; t < linkage.panels; t++) {
+            const near = [0, 1, 2].map((k) => linkage.neighbours[3 * t + k]);
+            const far = near.every((n) => n >= 0 && [0, 1, 2].every((k) => linkage.neighbours[3 * n + k] >= 0));
+            expect(judged[t]).toBe(Number(far));
+            if (far) inside++;
+            else values[t] = 1.01;
+        }
+        expect(inside).toBeGreaterThan(10);
+        expect(rangeOf(values, judged)).toEqual([1.5, 1.5]);
+        expect(rangeOf(values)[0]).toBeCloseTo(1.01, 6);
+    });
+    it("is of all panels where none is far inside", () => {
+        expect([...awayFromRim(patch(2).linkage)].every((v) => v === 1)).toBe(true);
     });
 });
 

@@ -1,6 +1,6 @@
 // The fields that panels can be coloured by: where their values come from and on which scale they are shown.
 import { type Scale, level, niceAbove, percentile, tide } from "./colour";
-import { distances, leastAtCorners } from "./measures";
+import { awayFromRim, distances, leastAtCorners } from "./measures";
 import type { Shell } from "./shell";
 
 export interface Field {
@@ -12,6 +12,8 @@ export interface Field {
     ends?: [string, string];
     available(source: Shell): boolean;
     values(source: Shell): Float32Array;
+    /** Panels whose values count for the range that is told; all, unless given. */
+    judged?(source: Shell): Uint8Array;
     scale(values: Float32Array, source: Shell): Scale;
 }
 
@@ -29,7 +31,7 @@ export function leadingForce(forces: Float32Array): Float32Array {
 export const fields: Field[] = [
     {
         id: "lambda", title: "Scale factor λ", unit: "", digits: 2, available: always,
-        values: (s) => s.realised,
+        values: (s) => s.realised, judged: (s) => awayFromRim(s.linkage),
         scale: () => ({ map: tide, lo: 1, hi: 2 }),
     },
     {

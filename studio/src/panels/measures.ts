@@ -57,12 +57,28 @@ export function hingeNormals(linkage: Linkage, normals: Float32Array, out: Float
     }
 }
 
-export function rangeOf(values: Float32Array): [number, number] {
+/** `judged`: 1 for values that count. */
+export function rangeOf(values: Float32Array, judged?: Uint8Array): [number, number] {
     let lo = Infinity;
     let hi = -Infinity;
-    for (const v of values) {
-        if (v < lo) lo = v;
-        if (v > hi) hi = v;
+    for (let k = 0; k < values.length; k++) {
+        if (judged && !judged[k]) continue;
+        if (values[k] < lo) lo = values[k];
+        if (values[k] > hi) hi = values[k];
     }
     return lo <= hi ? [lo, hi] : [NaN, NaN];
+}
+
+const away = new WeakMap<Linkage, Uint8Array>();
+/** 1 for panels whose neighbours are all there and touch no rim: only there says a scale factor what was painted, and the check
+ *  judges it. All, where no panel is so far inside. */
+export function awayFromRim(linkage: Linkage): Uint8Array {
+    const known = away.get(linkage);
+    if (known) return known;
+    const atRim = (t: number) => [0, 1, 2].some((k) => linkage.neighbours[3 * t + k] < 0);
+    const out = new Uint8Array(linkage.panels);
+    for (let t = 0; t < linkage.panels; t++) out[t] = Number([0, 1, 2].every((k) => linkage.neighbours[3 * t + k] >= 0 && !atRim(linkage.neighbours[3 * t + k])));
+    if (!out.includes(1)) out.fill(1);
+    away.set(linkage, out);
+    return out;
 }

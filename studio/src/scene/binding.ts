@@ -7,6 +7,7 @@ import { hovered, selected, selectedHinges, shown } from "../state/selection";
 import { fieldView, mode, scaleLimit, tints } from "../state/view";
 import { motion } from "../state/motion";
 import { tool } from "../tools";
+import { activePoint, rimHandles } from "../tools/rim";
 import { drawHinges, drawPanel } from "../tools/select";
 import { radiusOf } from "./camera";
 import { dark, light } from "./look";
@@ -93,6 +94,12 @@ export function bindScene(stage: Stage): () => void {
         tool.value;
         hovered.value;
         selectedHinges.value;
+        stage.invalidateOverlay();
+    }));
+
+    stops.push(effect(() => {
+        if (tool.value.id === "rim") rimHandles();
+        activePoint.value;
         stage.invalidateOverlay();
     }));
 

@@ -5,7 +5,7 @@ import * as THREE from "three";
 import type { PanelMesh } from "./panelmesh";
 import type { Look } from "./look";
 
-const bands = 9;
+const bands = 9; // of a sheet that lies flat: one
 const flatShadow = /* glsl */ `
 uniform vec3 towards; uniform float floorZ; uniform vec2 middle; uniform float halfSize;
 varying float vHeight;
@@ -44,8 +44,9 @@ export class GroundShadow {
 
     constructor(towards: readonly [number, number, number], private readonly size: number) {
         this.towards = new THREE.Vector3(...towards);
-        this.targets = [0, 1].map(() => new THREE.WebGLRenderTarget(size, size, {
-            format: THREE.RedFormat, type: THREE.UnsignedByteType, depthBuffer: false, generateMipmaps: false,
+        // panels are drawn into the first one: where they are as small as its texels, each takes a share of them
+        this.targets = [4, 0].map((samples) => new THREE.WebGLRenderTarget(size, size, {
+            format: THREE.RedFormat, type: THREE.UnsignedByteType, depthBuffer: false, generateMipmaps: false, samples,
         }));
         this.caster = new THREE.ShaderMaterial({
             vertexShader: flatShadow, fragmentShader: inBand, side: THREE.DoubleSide, depthTest: false, depthWrite: false,
@@ -99,9 +100,10 @@ export class GroundShadow {
         const pixels = (this.size / (2 * reach)) * panels.edge;
         // what is finer than the texture is made even: stripes otherwise
         const least = 0.1 + 0.9 * Math.max(0, Math.min(1, (24 - pixels) / 12));
-        const width = (k: number) => pixels * (least + (0.55 * ((k + 0.5) / bands) * height) / panels.edge);
-        for (let k = bands - 1; k >= 0; k--) {
-            u.band.value.set(k === 0 ? -Infinity : (k / bands) * height, k === bands - 1 ? Infinity : ((k + 1) / bands) * height);
+        const width = (k: number) => Math.max(1.5, pixels * least) + pixels * ((0.55 * ((k + 0.5) / bands) * height) / panels.edge);
+        const first = height < panels.edge ? 0 : bands - 1;
+        for (let k = first; k >= 0; k--) {
+            u.band.value.set(k === 0 ? -Infinity : (k / bands) * height, k === first ? Infinity : ((k + 1) / bands) * height);
             renderer.setRenderTarget(this.targets[0]);
             renderer.render(this.casterScene, this.camera);
             const below = k > 0 ? width(k - 1) : 0;

@@ -365,11 +365,16 @@ export class Stage {
             clearTimeout(this.restTimer);
             const waits = this.slow && (this.held || performance.now() - this.changed < rests[0]);
             const began = performance.now();
-            const moving = this.draw(now, waits ? "quick" : this.slow && performance.now() - this.changed < rests[1] ? "plain" : "whole");
+            const moving = this.draw(now, waits ? "quick" : this.slow && this.plainDiffers && performance.now() - this.changed < rests[1] ? "plain" : "whole");
             this.fly(this.onSubmitted?.(began));
             if (moving) this.invalidate();
         }
         if (this.staleOverlay) this.drawOverlay();
+    }
+
+    /** Whole pictures show more than plain ones: where panels are small they do not, and are not drawn twice. */
+    private get plainDiffers(): boolean {
+        return this.seen.some((view) => detailFor(view.orbit.pixels(this.scenes![view.state].panels.edge, view.rect.height), view.detail) === "full");
     }
 
     /** The views that are drawn. */
@@ -501,7 +506,7 @@ export class Stage {
         const due = this.changed + (!this.slow ? 80 : rests[this.drawnWith === "quick" ? 0 : 1]);
         this.restTimer = setTimeout(() => {
             if (this.held || this.flying || this.stale) return;
-            if (this.dirtyGround && (this.drawnWith !== "quick" || !this.slow)) this.drawGrounds();
+            if (this.dirtyGround && (this.drawnWith !== "quick" || !this.slow || !this.plainDiffers)) this.drawGrounds();
             this.stale = true;
             this.schedule();
         }, Math.max(20, due - performance.now()));

@@ -121,7 +121,7 @@ function receive(event: ServerEvent): void {
             if (event.variant !== undefined) announcedVariant = event;
             else {
                 announced = event;
-                making.value = documentState.value !== null && event.document !== documentState.value.id;
+                making.value = event.document !== documentState.value?.id;
             }
             break;
         case "status":
@@ -140,6 +140,8 @@ function receive(event: ServerEvent): void {
             problem.value = { error: event.error, about: event.do ?? "" };
             break;
         case "closed":
+            making.value = false;
+            progress.value = null;
             closedMessage.value = event.message;
             break;
         case "bye":

@@ -46,7 +46,7 @@ export const fieldView = computed<FieldView | null>(() => {
     const field = fieldById(fieldId.value);
     const values = field.values(shell);
     const scale = field.scale(values, shell);
-    return { field, values, scale, range: rangeOf(values), bins: histogram(values, scale.lo, scale.hi, 50) };
+    return { field, values, scale, range: rangeOf(values, field.judged?.(shell)), bins: histogram(values, scale.lo, scale.hi, 50) };
 });
 
 /** The panels' colours as they are now, on the scale as it was read last: 4 bytes each. */

@@ -8,7 +8,8 @@ import { clearSelection, hoveredHinge, select as choose, selectHinges, selected,
 import { currentShell } from "../state/session";
 import { type Hit, type Tool, pointer } from "./tool";
 
-export type SelectKind = "click" | "lasso" | "line" | "curve";
+/** `click`: panels one by one, or by a loop round them. */
+export type SelectKind = "click" | "line" | "curve";
 export const selectKind = signal<SelectKind>("click");
 
 let loop: { x: number; y: number }[] = [];

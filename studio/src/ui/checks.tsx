@@ -28,7 +28,7 @@ export function Checks() {
     if (!r) return <section class="checks" aria-label="Can it deploy?"><div class="verdict"><span class="q">Can it deploy?</span><span class="answer muted">Not known yet</span></div></section>;
     const failed = r.checks.filter((c) => c.severity === "failure").length;
     const warned = r.checks.filter((c) => c.severity === "warning").length;
-    const words = failed ? `${plural(failed, "check")} failed` : warned ? `${plural(warned, "check")} ${warned === 1 ? "needs" : "need"} a look` : r.verdict.severity === "unknown" ? "Still measuring" : "All checks passed";
+    const words = failed ? `${plural(failed, "check")} failed` : warned ? `${plural(warned, "check")} ${warned === 1 ? "needs" : "need"} a look` : r.verdict.severity === "unknown" ? (documentState.value?.load.kind === "none" ? "Choose what deploys it" : "Still measuring") : "All checks passed";
     return (
         <section class={`checks${busy ? " stale" : ""}`} aria-label="Can it deploy?">
             <button type="button" class="verdict" title="All findings" onClick={() => ((mode.value = "analyse"), (drawerOpen.value = true))}>

@@ -79,16 +79,24 @@ export function Segments<T extends string>({ name, value, options, onChange, fil
     );
 }
 
+/** Options of a group stand together, those without one first. */
+export interface ChoiceOption<T> {
+    value: T;
+    title: string;
+    disabled?: boolean;
+    group?: string;
+}
+
 export function Choice<T extends string>({ name, value, options, onChange, icon, bare, id }: {
-    name?: string; id?: string; value: T; options: readonly { value: T; title: string; disabled?: boolean }[]; onChange(value: T): void; icon?: IconName; bare?: boolean;
+    name?: string; id?: string; value: T; options: readonly ChoiceOption<T>[]; onChange(value: T): void; icon?: IconName; bare?: boolean;
 }) {
+    const groups = [...new Set(options.map((o) => o.group))];
+    const list = (group?: string) => options.filter((o) => o.group === group).map((o) => <option key={o.value} value={o.value} disabled={o.disabled}>{o.title}</option>);
     return (
         <div class={`choice${bare ? " bare" : ""}`}>
             {icon && <Icon name={icon} size={20} class="icon lead" />}
             <select id={id} aria-label={name} value={value} onChange={(e) => onChange(e.currentTarget.value as T)}>
-                {options.map((o) => (
-                    <option key={o.value} value={o.value} disabled={o.disabled}>{o.title}</option>
-                ))}
+                {groups.map((g) => (g === undefined ? list() : <optgroup key={g} label={g}>{list(g)}</optgroup>))}
             </select>
             <Icon name="chevron" size={16} />
         </div>
@@ -117,16 +125,18 @@ export interface NumberProps {
     id?: string;
     name?: string;
     step?: number;
+    /** Stands where the unit does. */
+    mark?: string;
 }
 
 /** Arrows step by the last shown digit, ten times with Shift, a tenth with Alt; Enter takes it, Escape gives it back. */
-export function NumberField({ value, unit = "", documentUnit, lo = null, hi = null, integer, placeholder, onChange, onClear, id, name, step }: NumberProps) {
+export function NumberField({ value, unit = "", documentUnit, lo = null, hi = null, integer, placeholder, onChange, onClear, id, name, step, mark }: NumberProps) {
     const digits = value === null || integer ? 0 : unit === "deg" || unit === "%" ? (Math.abs(value) >= 10 ? 0 : 1) : Math.max(2, decimals(value, 2));
     const shown = value === null ? "" : integer ? String(Math.round(value)) : number(value, Math.min(digits, 6)).replaceAll(",", "");
     const [text, setText] = useState<string | null>(null);
     const [wrong, setWrong] = useState("");
     const message = useId();
-    const label = unitLabel(unit, documentUnit);
+    const label = mark ?? unitLabel(unit, documentUnit);
     const plain = (v: number) => String(Number(v.toPrecision(4)));
     const range = () => lo !== null && hi !== null ? `Between ${plain(lo)} and ${plain(hi)}` : lo !== null ? `At least ${plain(lo)}` : hi !== null ? `At most ${plain(hi)}` : "A number";
     const take = (source: string) => {

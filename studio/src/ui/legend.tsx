@@ -51,7 +51,7 @@ export function Legend({ compact }: { compact: boolean }) {
         <section class={`legend float${compact ? " compact" : ""}`} aria-label="Legend">
             <header>
                 <Choice name="Colour by" bare value={fieldId.value} options={availableFields.value.map((f) => ({ value: f.id, title: f.unit && mode.value === "analyse" ? `${f.title}, ${unitLabel(f.unit, unit)}` : f.title }))} onChange={useField} />
-                <span class="range">{figure(range[0], rangeDigits)} to {signed && range[1] > 0 ? "+" : ""}{figure(range[1], rangeDigits)}{label && mode.value !== "analyse" ? ` ${label}` : ""}</span>
+                <span class="range" title={field.judged && "Of panels away from the rim"}>{figure(range[0], rangeDigits)} to {signed && range[1] > 0 ? "+" : ""}{figure(range[1], rangeDigits)}{label && mode.value !== "analyse" ? ` ${label}` : ""}</span>
             </header>
             <svg viewBox={`0 0 ${width} ${chart + bar + 24}`} role="img"
                 aria-label={`${field.title}: values from ${number(range[0], field.digits)} to ${number(range[1], field.digits)} ${label}`}

@@ -6,7 +6,7 @@ import { type Arguments, sheetRadius, valueOf } from "../tools/calls";
 import { Button, CheckBox, Choice, NumberField, NumberRow, Row, Segments } from "./controls";
 import { type LengthUnit, count } from "./format";
 
-const capital = (word: string) => word.charAt(0).toUpperCase() + word.slice(1).replace(/[_-]/g, " ");
+const capital = (word: string) => /^[mc]?m$/.test(word) ? word : word.charAt(0).toUpperCase() + word.slice(1).replace(/[_-]/g, " ");
 
 export function OperatorForm({ schema, args, onChange, omit = [] }: {
     schema: OperatorSchema; args: Arguments; onChange(name: string, value: unknown): void; omit?: readonly string[];
@@ -14,7 +14,7 @@ export function OperatorForm({ schema, args, onChange, omit = [] }: {
     return (
         <div class="form">
             {schema.fields.filter((f) => !omit.includes(f.name)).map((f) => (
-                <FieldRow key={f.name} field={f} value={valueOf(args, f)} onChange={(v) => onChange(f.name, v)} />
+                <FieldRow key={f.name} field={f} sized={!schema.starts} value={valueOf(args, f)} onChange={(v) => onChange(f.name, v)} />
             ))}
         </div>
     );
@@ -23,20 +23,21 @@ export function OperatorForm({ schema, args, onChange, omit = [] }: {
 /** Bounds that are only there to keep numbers finite are none for people. */
 const bound = (v: number | null) => (v !== null && Math.abs(v) < 1e8 ? v : null);
 
-function sliderOf(field: FieldSchema, value: number | null): [number, number] | undefined {
+/** `sized`: there is a sheet that lengths can be compared with. */
+function sliderOf(field: FieldSchema, value: number | null, sized: boolean): [number, number] | undefined {
     const [lo, hi] = [bound(field.lo), bound(field.hi)];
-    if (field.unit === "length" && field.required) return [0.01 * sheetRadius(), Math.max(sheetRadius(), value ?? 0)];
+    if (field.unit === "length" && field.required) return sized ? [0.01 * sheetRadius(), 2 * sheetRadius()] : undefined;
     return lo !== null && hi !== null && hi - lo <= 400 && (field.required || value !== null) ? [lo, hi] : undefined;
 }
 
-function FieldRow({ field, value, onChange }: { field: FieldSchema; value: unknown; onChange(value: unknown): void }) {
+function FieldRow({ field, value, sized, onChange }: { field: FieldSchema; value: unknown; sized: boolean; onChange(value: unknown): void }) {
     const unit = (documentState.value?.unit ?? "m") as LengthUnit;
     switch (field.kind) {
         case "number":
         case "integer": {
             const v = typeof value === "number" ? value : null;
             return <NumberRow label={field.title} title={field.doc} value={v} unit={field.unit} documentUnit={unit} lo={bound(field.lo)} hi={bound(field.hi)} integer={field.kind === "integer"}
-                placeholder={field.required ? "" : "by itself"} slider={sliderOf(field, v)} onChange={onChange} onClear={field.required ? undefined : () => onChange(undefined)} />;
+                placeholder={field.required ? "" : "by itself"} slider={sliderOf(field, v, sized)} onChange={onChange} onClear={field.required ? undefined : () => onChange(undefined)} />;
         }
         case "flag":
             return <Row label={field.title} title={field.doc}>{(id) => <CheckBox id={id} value={value === true} onChange={onChange} />}</Row>;
@@ -65,7 +66,7 @@ function FieldRow({ field, value, onChange }: { field: FieldSchema; value: unkno
                         <div class="row" role="group" aria-label={field.title}>
                             {Array.from({ length: field.width }, (_, k) => (
                                 <div class="grow" key={k}>
-                                    <NumberField name={`${field.title}, ${"xyz"[k] ?? k}`} value={v?.[k] ?? null} unit={field.unit === "length" ? "" : field.unit} documentUnit={unit} lo={bound(field.lo)} hi={bound(field.hi)} placeholder={"xyz"[k]}
+                                    <NumberField name={`${field.title}, ${"xyz"[k] ?? k}`} value={v?.[k] ?? null} unit={field.unit === "length" ? "" : field.unit} documentUnit={unit} lo={bound(field.lo)} hi={bound(field.hi)} mark={field.unit === "length" || field.unit === "" ? "xyz"[k] : undefined}
                                         onChange={(n) => onChange(Array.from({ length: field.width }, (_, i) => (i === k ? n : (v?.[i] ?? 0))))} />
                                 </div>
                             ))}

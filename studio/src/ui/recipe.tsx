@@ -9,12 +9,17 @@ import { Icon, operatorIcon } from "./icons";
 import { OperatorForm } from "./operatorform";
 import { OperatorPanel } from "./toolpanel";
 
+const groupTitles: Record<string, string> = {
+    scale: "Scale factors", boundary: "Boundary", dynamics: "Dynamics", constraint: "Constraints", selection: "Selection", site: "Site", finish: "Finish",
+};
+const groupOrder = Object.keys(groupTitles);
+
 export function Recipe() {
     const d = documentState.value;
     const editing = useSignal(-1);
     const adding = useSignal("");
     if (!d) return null;
-    const all = operators.value.filter((o) => !o.starts);
+    const all = operators.value.filter((o) => !o.starts).sort((a, b) => groupOrder.indexOf(a.group) - groupOrder.indexOf(b.group));
     const schema = operatorNamed(adding.value);
     return (
         <Section title="Recipe" id="recipe" aside={`${count(d.steps.length)} ${d.steps.length === 1 ? "step" : "steps"}`}>
@@ -23,7 +28,7 @@ export function Recipe() {
             </ol>
             {readOnly.value === null && (
                 <div style={{ marginTop: "8px" }}>
-                    <Choice name="Add a step" value={adding.value} options={[{ value: "", title: "Add a step…" }, ...all.map((o) => ({ value: o.name, title: o.title }))]} onChange={(v) => (adding.value = v)} />
+                    <Choice name="Add a step" value={adding.value} options={[{ value: "", title: "Add a step…" }, ...all.map((o) => ({ value: o.name, title: o.title, group: groupTitles[o.group] ?? o.group }))]} onChange={(v) => (adding.value = v)} />
                     {schema && <div style={{ marginTop: "8px" }}><p class="small muted">{schema.doc}</p><OperatorPanel schema={schema} label="Add" /></div>}
                 </div>
             )}

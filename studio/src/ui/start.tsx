@@ -31,7 +31,7 @@ export function StartPage() {
     const go = async (name: string, parameters: Record<string, unknown>) => {
         if (await command(name, parameters)) page.value = "work";
     };
-    const recovered = hello.value?.recovered ?? [];
+    const recovered = (hello.value?.recovered ?? []).filter((r) => r.name !== documentState.value?.id);
     return (
         <div class="start-page">
             <header class="bar">
@@ -91,7 +91,7 @@ export function StartPage() {
                             {hello.value.examples.map((e) => (
                                 <button key={e.name} type="button" class="example" onClick={() => void go("new", { example: e.name })}>
                                     <div class="picture"><ExamplePicture name={e.name} /></div>
-                                    <div class="words"><b>{e.title}</b><small>{e.doc}</small></div>
+                                    <div class="words"><b>{e.title}</b><small title={e.doc}>{e.doc.replace(/^Figure \d+: /, "").replace(/^./, (c) => c.toUpperCase())}</small></div>
                                 </button>
                             ))}
                         </div>

@@ -1,7 +1,7 @@
 // The first section of the inspector: what the active tool can be told.
 import { signal, useSignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
-import type { OperatorSchema } from "../protocol/types";
+import type { FieldSchema, OperatorSchema } from "../protocol/types";
 import { apply, command, currentShell, documentState, operatorNamed, operators, revision, status } from "../state/session";
 import { select, selectionWords, selected, selectedHinges } from "../state/selection";
 import { announcement } from "../state/commands";
@@ -21,6 +21,8 @@ import { OperatorForm } from "./operatorform";
 const unit = () => (documentState.value?.unit ?? "m") as LengthUnit;
 const set = (op: string) => (name: string, value: unknown) => setArgument(op, name, value);
 
+const lackingWords = (fields: readonly FieldSchema[]) => `Give ${fields.map((f) => f.title.toLowerCase()).join(", ")}`;
+
 /** Form of one operator with a button that applies it. */
 export function OperatorPanel({ schema, label = "Apply", extra = {} }: { schema: OperatorSchema; label?: string; extra?: Record<string, unknown> }) {
     const call = callOf(schema, extra);
@@ -30,9 +32,9 @@ export function OperatorPanel({ schema, label = "Apply", extra = {} }: { schema:
         <>
             <OperatorForm schema={schema} args={{ ...extra, ...argumentsOf(schema.name) }} onChange={set(schema.name)} />
             <div class="row" style={{ marginTop: "8px" }}>
-                <Button small disabled={lacking.length > 0 && !(confined && lacking.length === 1)} title={lacking.length ? `Missing: ${lacking.map((f) => f.title).join(", ")}` : schema.doc}
+                <Button small disabled={lacking.length > 0 && !(confined && lacking.length === 1)} title={schema.doc}
                     onClick={() => void apply(confined ? { ...call, hinges: selectionWords.value } : call)}>{label}</Button>
-                {confined ? <span class="small muted">to the selection</span> : null}
+                {confined ? <span class="small muted">to the selection</span> : lacking.length > 0 ? <span class="small muted">{lackingWords(lacking)}</span> : null}
             </div>
         </>
     );
@@ -138,6 +140,12 @@ const selectKinds: { value: SelectKind; title: string }[] = [
     { value: "click", title: "Panels" }, { value: "line", title: "Line" }, { value: "curve", title: "Curve" },
 ];
 
+const selectHints: Record<SelectKind, string> = {
+    click: "Click a panel; drag a loop round several. Shift adds, Ctrl takes away.",
+    line: "Click near a hinge: all hinges of the kagome line through it are selected.",
+    curve: "Click two hinges: the shortest way between them is selected.",
+};
+
 function SelectionFacts() {
     revision.value;
     const n = selected.value.size;
@@ -145,7 +153,7 @@ function SelectionFacts() {
     const name = useSignal("");
     const shell = currentShell();
     const schema = operatorNamed("select");
-    if (!n && !h) return <p class="small muted">Click a panel; drag a loop round several. Shift adds, Ctrl takes away.</p>;
+    if (!n && !h) return <p class="small muted">{selectHints[selectKind.value]}</p>;
     let [lo, hi] = [Infinity, -Infinity];
     for (const t of selected.value) {
         lo = Math.min(lo, shell?.realised[t] ?? NaN);
@@ -171,7 +179,7 @@ function SelectPanel() {
     return (
         <Section title="Select" aside={<button type="button" class="link" aria-expanded={byName.value} onClick={() => (byName.value = !byName.value)}>By name</button>}>
             <div class="form">
-                <Row label="What">{() => <Segments fill name="What to select" value={selectKind.value === "lasso" ? "click" : selectKind.value} options={selectKinds} onChange={(k) => (selectKind.value = k)} />}</Row>
+                <Row label="What">{() => <Segments fill name="What to select" value={selectKind.value} options={selectKinds} onChange={(k) => (selectKind.value = k)} />}</Row>
             </div>
             {byName.value && <ByName />}
             <SelectionFacts />
@@ -216,7 +224,7 @@ function RimPanel() {
     return (
         <Section title="Boundary" aside={documentState.value?.rim.length ? plural(documentState.value.rim.length, "part") : "Free"}>
             <div class="form">
-                <Row label="Rim">{(id) => <Choice id={id} value={schema.name} options={all.map((o) => ({ value: o.name, title: o.title }))} onChange={(v) => (rimOp.value = v)} />}</Row>
+                <Row label="Rim">{(id) => <Choice id={id} value={schema.name} options={all.map((o) => ({ value: o.name, title: o.title, group: /_point_/.test(o.name) ? "Control points" : undefined }))} onChange={(v) => (rimOp.value = v)} />}</Row>
             </div>
             <OperatorForm schema={schema} args={args} omit={field ? [field.name] : []} onChange={(name, value) => {
                 setArgument(schema.name, name, value);
@@ -237,7 +245,7 @@ function RimPanel() {
                             <Row label="Place">{() => (
                                 <div class="row" role="group" aria-label="Place of the point">
                                     {points[k].map((v, i) => (
-                                        <div class="grow" key={i}><NumberField name={"XYZ"[i]} value={v} unit="" documentUnit={unit()} onChange={(n) => {
+                                        <div class="grow" key={i}><NumberField name={"XYZ"[i]} mark={"xyz"[i]} value={v} unit="" documentUnit={unit()} onChange={(n) => {
                                             setRimPoints(points.map((p, j) => (j === k ? (p.map((x, c) => (c === i ? n : x)) as [number, number, number]) : p)));
                                             previewRim();
                                         }} /></div>
@@ -251,7 +259,8 @@ function RimPanel() {
                 </>
             )}
             <div class="row" style={{ marginTop: "8px" }}>
-                <Button small disabled={lacking.length > 0} title={lacking.length ? `Missing: ${lacking.map((f) => f.title).join(", ")}` : schema.doc} onClick={() => void applyRim()}>Apply</Button>
+                <Button small disabled={lacking.length > 0} title={schema.doc} onClick={() => void applyRim()}>Apply</Button>
+                {lacking.length > 0 && <span class="small muted">{lackingWords(lacking)}</span>}
             </div>
         </Section>
     );
