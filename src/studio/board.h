@@ -33,6 +33,7 @@ typedef enum section {
     SECTION_VERTEX_SCALE = 35,
     SECTION_PLACE = 40,
     SECTION_SHARE = 41,
+    SECTION_TIMES = 42,
     SECTION_LIMIT = 48,
 } section;
 

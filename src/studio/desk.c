@@ -72,6 +72,7 @@ ax_status desk_preview(desk* d, int client, message* m, ax_error* error)
     d->preview.step = json_incref(step);
     d->preview.client = client;
     d->preview.serial = (unsigned)serial;
+    d->preview.came = ax_seconds();
     d->hand = client;
     pthread_cond_signal(&d->work);
     return AX_OK;
@@ -89,8 +90,12 @@ ax_status desk_grab(desk* d, int client, message* m, ax_error* error)
         return ax_fail(error, AX_USAGE, "grab: \"hinge\" and \"serial\" are not negative.");
     if (!hand_is_free(d, client))
         return AX_OK;
-    d->grab = (grab){
-        .wanted = true, .hinge = hinge, .serial = (unsigned)serial, .client = client, .to = {to[0], to[1], to[2]}};
+    d->grab = (grab){.wanted = true,
+                     .hinge = hinge,
+                     .serial = (unsigned)serial,
+                     .client = client,
+                     .to = {to[0], to[1], to[2]},
+                     .came = ax_seconds()};
     d->hand = client;
     pthread_cond_signal(&d->work);
     return AX_OK;
@@ -229,6 +234,10 @@ static double publish(desk* d, bool whole)
     d->shown_hand = d->hand_serial ? d->hand_of_serial : 0;
     if (d->shown_serial != d->hand_serial || flags != b->flags)
         ++b->stamp; // a frame without sections tells it
+    if (d->hand_serial && d->shown_serial != d->hand_serial) {
+        const double times[] = {1e3 * (d->hand_moved - d->hand_came), 1e3 * (ax_seconds() - d->hand_moved)};
+        board_put_numbers(b, SECTION_TIMES, 2, times, 2, NULL);
+    }
     d->shown_serial = d->hand_serial;
     hub_unlock(d->hub);
     hub_wake(d->hub);
@@ -516,6 +525,8 @@ static void advance(desk* d, double seconds, bool first)
 static void show_preview(desk* d, preview p)
 {
     ax_error error = {0};
+    d->hand_moved = ax_seconds();
+    d->hand_came = p.came;
     if (json_is_null(p.step)) {
         desk_end_live(d);
         return;
@@ -544,7 +555,6 @@ static void show_preview(desk* d, preview p)
     d->hand_serial = p.serial;
     d->hand_of_serial = p.client;
     start_moving(d);
-    d->hand_moved = d->move_start;
     advance(d, reaction, true);
 }
 
@@ -553,6 +563,8 @@ static const char hand_name[] = "the hand";
 static void follow_grab(desk* d, grab g)
 {
     ax_error error = {0};
+    d->hand_moved = ax_seconds();
+    d->hand_came = g.came;
     if (!begin_live(d))
         return;
     ax_form_view v = ax_form_look(d->live);
@@ -580,7 +592,6 @@ static void follow_grab(desk* d, grab g)
     d->hand_serial = g.serial;
     d->hand_of_serial = g.client;
     start_moving(d);
-    d->hand_moved = d->move_start;
     advance(d, reaction, true);
 }
 

@@ -15,13 +15,14 @@ typedef struct preview {
     json_t* step; // null: ends it; NULL: there is none
     int client;
     unsigned serial;
+    double came; // seconds
 } preview;
 
 typedef struct grab {
     bool wanted;
     int hinge, client;
     unsigned serial;
-    double to[3];
+    double to[3], came;
 } grab;
 
 struct desk {
@@ -68,7 +69,7 @@ struct desk {
     int last_count;
     ax_form_report report;
     double published, measured, measure_time, reported, report_time, iteration_time, update_time, settle_time,
-        move_start, hand_moved;
+        move_start, hand_came, hand_moved; // what the hand did last came, and was begun on
     const char* job_name;
     int job_id;
     double job_start, progressed;

@@ -10,10 +10,15 @@ import { Hand, Studio, launch } from "./studio.mjs";
 
 const movements = 150;
 const parts = [
-    ["pointer to preview", (s) => s.sent - s.moved],
-    ["solved and arrived", (s) => s.arrived - s.sent],
-    ["waits for its turn", (s) => s.began - s.arrived],
-    ["drawn and presented", (s) => s.presented - s.began],
+    ["pointer event to page", (s) => s.heard - s.moved],
+    ["page to preview", (s) => s.sent - s.heard],
+    ["to the server and back", (s) => s.arrived - s.sent - s.waited - s.solved],
+    ["waits for the solver", (s) => s.waited],
+    ["solved", (s) => s.solved],
+    ["to who draws it", (s) => s.came - s.arrived],
+    ["waits for the last picture", (s) => s.began - s.came],
+    ["panels into pixels", (s) => s.submitted - s.began],
+    ["to the screen", (s) => s.presented - s.submitted],
     ["hand to screen", (s) => s.presented - s.moved],
     ["of it drawing in software", (s) => s.software],
     ["hand to screen without", (s) => s.presented - s.moved - s.software],
@@ -83,10 +88,20 @@ function complete(samples, events, origin) {
         else if (e.name === "AnimationFrame::Presentation" && frames.has(e.args.id)) frames.get(e.args.id).presented = at(e);
     }
     const software = events.filter((e) => e.ph === "X" && (e.name === "Display::DrawAndSwap" || e.name === "GPUTask")).map((e) => [at(e), at(e) + e.dur / 1000]);
+    // a worker's canvas hands its pictures to the browser by itself, from a surface of its own: one for each, and the next drawing takes it in
+    const surface = (e) => Number(/FrameSinkId\(\d+, (\d+)\)/.exec(e.args.SurfaceId)?.[1]);
+    const handed = events.filter((e) => e.name === "Surface::CommitFrame" && surface(e) >= 2 ** 31).map(at).sort((a, b) => a - b);
+    const drawings = events.filter((e) => e.ph === "X" && e.name === "Display::DrawAndSwap").map((e) => [at(e), at(e) + e.dur / 1000]).sort((a, b) => a[0] - b[0]);
+    const pictures = new Map();
+    for (const submitted of [...new Set(samples.filter((s) => s.apart).map((s) => s.submitted))].sort((a, b) => a - b)) {
+        while (handed.length && handed[0] < submitted) handed.shift();
+        const taken = handed.shift();
+        pictures.set(submitted, drawings.find(([from]) => from >= taken)?.[1] ?? NaN);
+    }
     for (const s of samples) {
         // a frame that changed nothing says so at once; the picture is then in the next one that was presented
         const frame = [...frames.values()].filter((f) => f.to >= s.submitted && f.presented >= s.submitted).sort((a, b) => a.from - b.from)[0];
-        s.presented = frame?.presented ?? NaN;
+        s.presented = s.apart ? pictures.get(s.submitted) : (frame?.presented ?? NaN);
         s.software = covered([...software, [s.began, s.submitted]], s.began, s.presented);
     }
     return samples.filter((s) => Number.isFinite(s.presented));
@@ -104,6 +119,7 @@ async function measure(browser, panels) {
         const hand = await Hand.open(browser, studio.address, { viewport: { width: 1440, height: 900 }, refines: true });
         await hand.key("b");
         await hand.page.waitForFunction(() => auxshell.stage.value.atRest, null, { timeout: 60000 });
+        await hand.page.waitForTimeout(1500); // and a moment more, as a hand does
         await hand.page.evaluate(() => (auxshell.latency.samples.length = 0));
         let origin = 0;
         const events = await traced(browser, async () => {
@@ -124,7 +140,8 @@ const sizes = process.argv.slice(2).map(Number);
 for (const panels of sizes.length ? sizes : [2000, 10000]) {
     const { samples, all, panels: count, renderer } = await measure(browser, panels);
     const pictures = new Set(samples.map((s) => s.presented)).size;
-    console.log(`\n${count} panels, ${renderer}: ${samples.length} of ${all} movements in ${pictures} pictures, ${(pictures / (movements / 60)).toFixed(0)} a second`);
+    const apart = samples.filter((s) => s.apart).length;
+    console.log(`\n${count} panels, ${renderer}: ${samples.length} of ${all} movements in ${pictures} pictures, ${(pictures / (movements / 60)).toFixed(0)} a second; ${apart} by the worker`);
     console.log(`${"ms".padEnd(32)}${["median", "p95", "most"].map((w) => w.padStart(9)).join("")}`);
     for (const [name, of] of parts) {
         const values = samples.map(of);

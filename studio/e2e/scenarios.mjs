@@ -706,4 +706,48 @@ export const scenarios = {
             note(`${all.length} previews shown, median ${all[all.length >> 1].toFixed(0)} ms, p95 ${all[Math.floor(0.95 * all.length)].toFixed(0)} ms from hand to screen, in software`);
         });
     },
+
+    async "what moves is drawn apart from the page, the same to the pixel, and the page hears of it meanwhile"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            await hand.key("b");
+            const [from, to] = [await hand.flat(0.35, 0.4), await hand.flat(0.65, 0.5)];
+            await page.mouse.move(...from);
+            await page.mouse.down();
+            for (let k = 1; !(await page.evaluate(() => auxshell.stage.value.isLive)); k++) {
+                assert.ok(k < 400, "the worker's pictures did not come");
+                await page.mouse.move(from[0] + (to[0] - from[0]) * Math.abs(Math.sin(k / 20)), from[1] + (to[1] - from[1]) * Math.abs(Math.cos(k / 20)));
+            }
+            const before = await page.evaluate(() => auxshell.session.frames.value);
+            for (let k = 0; k < 30; k++) await page.mouse.move(from[0] + 3 * k, from[1] + k);
+            await page.waitForFunction((n) => auxshell.session.frames.value > n, before); // states come to the page too
+            await page.evaluate(() => auxshell.session.tell("pause"));
+            await page.waitForFunction(() => !auxshell.shell().moving);
+            await page.waitForTimeout(500);
+            const pixels = (name) => page.evaluate((name) => {
+                const canvas = auxshell.stage.value.canvases[name];
+                const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+                copy.drawImage(canvas, 0, 0);
+                window.pictures = { ...window.pictures, [name]: copy.getImageData(0, 0, canvas.width, canvas.height).data };
+                return !canvas.hidden;
+            }, name);
+            assert.ok(await pixels("apart"), "the worker's canvas is seen");
+            await page.evaluate(() => {
+                const stage = auxshell.stage.value;
+                stage.watch = null; // as in a browser without workers that draw
+                stage.live.stop();
+                stage.invalidate();
+            });
+            await page.waitForFunction(() => !auxshell.stage.value.isLive);
+            assert.ok(await pixels("quick"), "the page draws itself");
+            const [drawn, other] = await page.evaluate(() => {
+                const { apart, quick } = window.pictures;
+                return [apart.filter((v) => v).length, apart.length === quick.length ? apart.filter((v, k) => v !== quick[k]).length : -1];
+            });
+            assert.ok(drawn > 20000, `${drawn} bytes of the picture are drawn`);
+            assert.equal(other, 0, "bytes that differ");
+            await page.mouse.up();
+            await hand.stepsAre("start_circle", "gradient_radial", "rim_circle", "inflation", "paint");
+        });
+    },
 };

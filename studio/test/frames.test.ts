@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { decodeFrame, encodeFrame, kinds, section, type Numbers } from "../src/protocol/frames";
+import { decodeFrame, encodeFrame, isState, kinds, mergeFrames, section, type Numbers } from "../src/protocol/frames";
 
 const frame = () => encodeFrame({
     kind: kinds.state, re: 0, topology: 7, revision: 12, serial: 41, flags: 9,
@@ -16,6 +16,21 @@ describe("frames", () => {
         expect([...f.sections.get(section.flat)!]).toEqual([1, -2, 0.5, 3]);
         expect(new TextDecoder().decode(f.sections.get(section.names) as Uint8Array)).toBe("A1\nB2\n");
         expect([...f.sections.get(section.triangles)!]).toEqual([0, 1, 2]);
+    });
+    it("are one of what changed last, of the later state", () => {
+        const before = decodeFrame(frame());
+        const after = { ...before, revision: 13, serial: 0, sections: new Map<number, Numbers>([[section.flat, Float32Array.of(5, 6)], [section.deployed, Float32Array.of(7)]]) };
+        const both = decodeFrame(encodeFrame(mergeFrames(before, after)));
+        expect([both.revision, both.serial, both.topology]).toEqual([13, 0, 7]);
+        expect([...both.sections.get(section.flat)!]).toEqual([5, 6]);
+        expect([...both.sections.get(section.deployed)!]).toEqual([7]);
+        expect([...both.sections.get(section.triangles)!]).toEqual([0, 1, 2]);
+        expect(mergeFrames(null, after)).toEqual(after);
+    });
+    it("tell states from others before they are taken apart", () => {
+        expect(isState(frame())).toBe(true);
+        expect(isState(encodeFrame({ ...decodeFrame(frame()), kind: kinds.motion }))).toBe(false);
+        expect(isState(new ArrayBuffer(4))).toBe(false);
     });
     it("say by an empty section that there is no such thing", () => {
         const f = decodeFrame(frame());

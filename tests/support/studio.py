@@ -15,7 +15,7 @@ from support.command import AUXSHELL
 SECTIONS = {1: "triangles", 2: "hole_start", 3: "hole_hinges", 4: "opening_start", 5: "opening_hinges", 6: "on_rim", 7: "panels",
             8: "names", 9: "sheet", 16: "flat", 17: "deployed", 18: "simulated", 20: "prescribed", 21: "realised", 22: "opening",
             23: "material", 24: "mouth", 25: "residual", 26: "curvature", 27: "edge_forces", 28: "supports", 29: "reactions",
-            32: "vertices", 33: "faces", 34: "vertex_curvature", 35: "vertex_scale", 40: "place", 41: "share"}
+            32: "vertices", 33: "faces", 34: "vertex_curvature", 35: "vertex_scale", 40: "place", 41: "share", 42: "times"}
 SETTLED, EXACT, MOVING, PREVIEW = 1, 2, 4, 8
 
 

@@ -31,6 +31,7 @@ function mapOf(name: ColourMap["name"], stops: string[]): ColourMap {
 
 export const tide = mapOf("tide", tideStops);
 export const level = mapOf("level", levelStops);
+export const colourMaps = { tide, level };
 
 export interface Scale {
     map: ColourMap;

@@ -1,5 +1,7 @@
 // Panels drawn without a graphics card: one flat triangle each, put into an array of pixels with a depth per pixel. What moves is
 // drawn so where WebGL itself is software, which takes ten times as long for the same picture.
+import { panelNormals } from "./measures";
+import { type Lights, shadePanel } from "./shade";
 
 /** RGBA bytes as numbers of 32 bits (little-endian), and depths, nearer is less; rows from the top down. */
 export interface Picture {
@@ -123,4 +125,18 @@ export function drawPanels(picture: Picture, window: Window, places: Float32Arra
             }
         }
     }
+}
+
+/** What a state is seen with. */
+export interface Sight {
+    window: Window;
+    lights: Lights;
+    inks: Inks;
+}
+
+/** Panels in their places with their colours (4 bytes each) and marks. `normals` is room for 3 numbers per panel. */
+export function drawShell(picture: Picture, { window, lights, inks }: Sight, triangles: Uint32Array, places: Float32Array, tints: Uint8Array,
+    marks: Uint8Array, normals: Float32Array): void {
+    panelNormals(triangles, places, normals);
+    drawPanels(picture, window, places, triangles, (t, front) => shadePanel(lights, normals, tints, t, front), marks, inks);
 }

@@ -55,6 +55,11 @@ export class Shell {
         this.take(first);
     }
 
+    /** A shell that came from another thread: its fields alone do. */
+    static from(fields: Shell): Shell {
+        return Object.assign(Object.create(Shell.prototype) as Shell, fields);
+    }
+
     /** What a later frame changed. */
     take(frame: Frame): void {
         const floats = (name: number, present: Float32Array) => (frame.sections.get(name) as Float32Array | undefined) ?? present;

@@ -8,7 +8,7 @@ export const section = {
     triangles: 1, holeStart: 2, holeHinges: 3, openingStart: 4, openingHinges: 5, onRim: 6, panels: 7, names: 8, sheet: 9,
     flat: 16, deployed: 17, simulated: 18, prescribed: 20, realised: 21, opening: 22, material: 23, mouth: 24, residual: 25,
     curvature: 26, forces: 27, supports: 28, reactions: 29, vertices: 32, faces: 33, meanCurvature: 34, scaleFactor: 35,
-    place: 40, share: 41,
+    place: 40, share: 41, times: 42,
 } as const;
 
 export const flag = { settled: 1, exact: 2, moving: 4, preview: 8 } as const;
@@ -47,7 +47,14 @@ export function decodeFrame(buffer: ArrayBuffer): Frame {
     return { kind: word(4), re: word(8), topology: word(12), revision: word(16), serial: word(20), flags: word(24), sections };
 }
 
-/** The same the other way round: for tests and for fixtures. */
+/** What two states of one linkage, the second of them later, are together. */
+export function mergeFrames(before: Frame | null, after: Frame): Frame {
+    return { ...after, sections: new Map([...(before?.sections ?? []), ...after.sections]) };
+}
+
+export const isState = (buffer: ArrayBuffer) => buffer.byteLength >= 8 && new DataView(buffer).getUint32(4, true) === kinds.state;
+
+/** The same the other way round. */
 export function encodeFrame(frame: Frame): ArrayBuffer {
     let size = 32;
     for (const data of frame.sections.values()) size += 12 + ((data.byteLength + 3) & ~3);

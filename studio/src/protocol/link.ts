@@ -5,11 +5,14 @@ import type { Answer, Problem, ServerEvent } from "./types";
 export interface Transport {
     send(text: string): void;
     close(): void;
+    /** From when `begun` is called every state goes to the port at once, and here gathered, until null is given. */
+    watch?(port: MessagePort | null, begun?: () => void): void;
 }
 export interface TransportEvents {
     open(): void;
     text(message: string): void;
-    binary(message: ArrayBuffer): void;
+    /** `gathered`: states that were watched, and acknowledged. */
+    binary(message: ArrayBuffer, gathered?: boolean): void;
     closed(): void;
 }
 export type Connect = (events: TransportEvents) => Transport;
@@ -22,7 +25,7 @@ export class CommandError extends Error {
 
 export interface LinkEvents {
     event(event: ServerEvent): void;
-    frame(frame: Frame): void;
+    frame(frame: Frame, gathered: boolean): void;
     opened(): void;
     lost(): void;
 }
@@ -50,7 +53,7 @@ export class Link {
                 this.events.opened();
             },
             text: (message) => this.receive(message),
-            binary: (message) => this.events.frame(decodeFrame(message)),
+            binary: (message, gathered = false) => this.events.frame(decodeFrame(message), gathered),
             closed: () => {
                 if (this.transport === transport) this.broken();
             },
@@ -76,6 +79,13 @@ export class Link {
     /** A command without an answer. */
     tell(name: string, parameters: Record<string, unknown> = {}): void {
         if (this.open) this.transport!.send(JSON.stringify({ do: name, ...parameters }));
+    }
+
+    /** False where states cannot be watched. */
+    watch(port: MessagePort | null, begun?: () => void): boolean {
+        if (!this.open || !this.transport?.watch) return false;
+        this.transport.watch(port, begun);
+        return true;
     }
 
     /** A serial for previews and grabs, rising over the life of the connection. */
@@ -112,14 +122,28 @@ export function socketTo(location: Location): Connect {
     const worker = new Worker(new URL("./socket-worker.ts", import.meta.url), { type: "module", name: "socket" });
     return (events) => {
         const { port1: port, port2 } = new MessageChannel();
-        port.onmessage = ({ data }: MessageEvent<boolean | string | ArrayBuffer>) => {
+        let watched: (() => void) | undefined;
+        port.onmessage = ({ data }: MessageEvent<boolean | string | ArrayBuffer | { states: ArrayBuffer } | undefined>) => {
             if (data === true) events.open();
             else if (data === false) events.closed();
+            else if (data === undefined) watched?.();
             else if (typeof data === "string") events.text(data);
-            else events.binary(data);
+            else if (data instanceof ArrayBuffer) events.binary(data);
+            else {
+                events.binary(data.states, true);
+                port.postMessage(true);
+            }
         };
         worker.postMessage(address, [port2]);
-        return { send: (text) => port.postMessage(text), close: () => port.postMessage(null) };
+        return {
+            send: (text) => port.postMessage(text),
+            close: () => port.postMessage(null),
+            watch: (watcher, begun) => {
+                watched = begun;
+                if (watcher) port.postMessage(undefined, [watcher]);
+                else port.postMessage(false);
+            },
+        };
     };
 }
 

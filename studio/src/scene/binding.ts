@@ -1,7 +1,7 @@
 // From state to scene: what the signals say is drawn. The scene itself reads no signal and writes none.
 import { effect } from "@preact/signals";
-import { stateDrawn, stateSubmitted } from "../state/latency";
-import { acknowledge, connection, currentShell, frames, holdStates, making, onShell, settleFrames } from "../state/session";
+import { stamped, stateDrawn, stateSubmitted } from "../state/latency";
+import { acknowledge, connection, currentShell, frames, handAsks, holdStates, making, onShell, settleFrames, watchStates } from "../state/session";
 import { darkTheme, reducedMotion } from "../state/settings";
 import { hovered, selected, selectedHinges, shown } from "../state/selection";
 import { fieldView, mode, scaleLimit, tints } from "../state/view";
@@ -44,8 +44,10 @@ export function bindScene(stage: Stage): () => void {
         const view = fieldView.value;
         if (!view || !stage.scenes || view.values.length !== stage.shell?.linkage.panels) return;
         const bars = view.field.id === "force" && stage.shell.forces ? stage.shell.forces.map((f) => f / view.scale.hi) : null;
+        const { map, lo, hi } = view.scale;
+        stage.colouring = { field: view.field.id, map: map.name, lo, hi };
         stage.each(({ panels }) => {
-            panels.setForces(bars, view.scale.map.table);
+            panels.setForces(bars, map.table);
         });
     }));
     stops.push(effect(() => {
@@ -102,10 +104,16 @@ export function bindScene(stage: Stage): () => void {
         activePoint.value;
         stage.invalidateOverlay();
     }));
+    stops.push(effect(() => {
+        if (handAsks.value) stage.expect();
+    }));
 
     stops.push(holdStates(() => stage.rendering));
     stage.onBefore = settleFrames;
+    stage.watch = watchStates;
+    stage.onStamped = stamped;
     stage.onSubmitted = (began) => {
+        if (stage.isLive) return acknowledge; // what the worker drew is stamped there
         const serial = currentShell()?.serial ?? 0;
         stateSubmitted(serial, began);
         return () => {

@@ -6,8 +6,8 @@ import { type Detail, drawn, makeTemplate } from "../panels/template";
 import type { Linkage } from "../panels/linkage";
 import { gather, medianEdge } from "../panels/linkage";
 import { hingeNormals, panelNormals } from "../panels/measures";
-import { type Inks, type Picture, type Window, drawPanels } from "../panels/raster";
-import { type Lights, shadePanel } from "../panels/shade";
+import { type Inks, type Picture, type Sight, type Window, drawShell } from "../panels/raster";
+import type { Lights } from "../panels/shade";
 import type { Look } from "./look";
 
 /** Marks of a panel, read by the fragment shader. */
@@ -216,12 +216,19 @@ mat3 jointFrame() {
         this.lights = lights;
     }
 
-    /** Into a picture, without the renderer: one triangle per panel, as strongly outlined as `setDetail` said last. */
+    /** How panels look without the renderer, as strongly outlined as `setDetail` said last. */
+    sight(window: Window): Sight {
+        return { window, lights: this.lights, inks: { ...this.inks, lineAlpha: this.uniforms.lineAlpha.value as number } };
+    }
+
+    /** Into a picture: one triangle per panel. */
     drawQuick(picture: Picture, window: Window): void {
-        this.placeNormals();
-        const tints = this.tint.array as Uint8Array;
-        drawPanels(picture, window, this.places, this.linkage.triangles, (t, front) => shadePanel(this.lights, this.normals, tints, t, front),
-            this.marks.array as Uint8Array, { ...this.inks, lineAlpha: this.uniforms.lineAlpha.value as number });
+        drawShell(picture, this.sight(window), this.linkage.triangles, this.places, this.tint.array as Uint8Array, this.shownMarks, this.normals);
+        this.normalsStale = false;
+    }
+
+    get shownMarks(): Uint8Array {
+        return this.marks.array as Uint8Array;
     }
 
     /** Level of detail and the outline's strength for so many pixels per panel edge. */

@@ -3,13 +3,16 @@
 // can be drawn anew without the scenes.
 //
 // One picture at a time is with the renderer, and the next is of whatever is newest then: a slow renderer shows fewer pictures, not
-// older ones. If whole pictures take it too long, panels that move are drawn without it, on a canvas of their own over its ground;
-// once nothing has changed for a moment a better picture follows, then the whole one.
+// older ones. If whole pictures take it too long, panels that move are drawn without it, on a canvas of their own over its ground:
+// while the cameras rest by a worker, as states come in; else here. Once nothing has changed for a moment a better picture follows, then
+// the whole one.
 import * as THREE from "three";
-import { type Picture, clear, makePicture } from "../panels/raster";
+import { type Picture, type Window, clear, makePicture } from "../panels/raster";
 import type { Shell } from "../panels/shell";
 import { type Detail, detailFor } from "../panels/template";
+import type { Stamp } from "../state/latency";
 import { OrbitCamera, type Pose, type Preset, presets, radiusOf } from "./camera";
+import { Live, type LiveScene, type Watch } from "./live";
 import { type Look, light } from "./look";
 import type { PanelMesh } from "./panelmesh";
 import { ShellScene } from "./shellscene";
@@ -50,6 +53,17 @@ type Effort = "quick" | "plain" | "whole";
 
 type QuickPicture = Picture & { image: ImageData; context: CanvasRenderingContext2D };
 
+/** One over the other and equally large. */
+export interface Canvases {
+    canvas: HTMLCanvasElement;
+    /** A copy of what the renderer draws under quick panels. */
+    ground: HTMLCanvasElement;
+    /** Panels drawn without the renderer: here, and by a worker. */
+    quick: HTMLCanvasElement;
+    apart: HTMLCanvasElement;
+    overlay: HTMLCanvasElement;
+}
+
 export type Overlay = (context: CanvasRenderingContext2D, stage: Stage) => void;
 export type Drawn = (view: View) => void;
 
@@ -68,6 +82,11 @@ export class Stage {
     readonly drawn = new Set<Drawn>();
     /** A picture that was begun at that time is with the browser or the graphics card; what it returns is called when it is done. */
     onSubmitted: ((began: number) => () => void) | null = null;
+    /** How states get to the worker that draws them as they come; null: there is no way. */
+    watch: Watch | null = null;
+    /** What it draws them in. */
+    colouring: Pick<LiveScene, "field" | "lo" | "hi" | "map"> | null = null;
+    onStamped: (stamps: Stamp[]) => void = () => undefined;
     /** Called before drawing: what is still to be told to the scenes. */
     onBefore: (() => void) | null = null;
     animated = true;
@@ -102,16 +121,24 @@ export class Stage {
     private drawnWith: Effort = "whole";
     /** Whether the renderer had a part in the last picture. */
     private rendered = false;
-    /** What the picture under quick panels was made for; empty: it was not. */
+    /** What the renderer's picture is made for if it is that under quick panels, and its copy; empty: it is not. */
     private backdrop = "";
+    private copied = "";
+    /** States are about to come. */
+    private expecting = false;
+    private practised = false;
     private quickPicture: QuickPicture | null = null;
+    private live: Live | null = null;
     /** Milliseconds that the last two whole pictures took: one alone may have had shaders to compile. */
     private wholeTimes: [number, number];
     private width = 0;
     private height = 0;
 
-    /** `quick` and `overlay` lie over `canvas`, as large as it. */
-    constructor(readonly canvas: HTMLCanvasElement, private readonly quick: HTMLCanvasElement, readonly overlay: HTMLCanvasElement) {
+    readonly canvas: HTMLCanvasElement;
+
+    constructor(private readonly canvases: Canvases) {
+        const { canvas } = canvases;
+        this.canvas = canvas;
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: false });
         this.renderer.toneMapping = THREE.NoToneMapping;
         this.renderer.outputColorSpace = THREE.SRGBColorSpace;
@@ -123,7 +150,7 @@ export class Stage {
         this.rendererName = name;
         this.frugal = /swiftshader|llvmpipe|software/i.test(name);
         this.wholeTimes = this.frugal ? [Infinity, Infinity] : [0, 0];
-        this.context2d = overlay.getContext("2d")!;
+        this.context2d = canvases.overlay.getContext("2d")!;
     }
 
     resize(width: number, height: number): void {
@@ -131,9 +158,9 @@ export class Stage {
         this.height = height;
         this.renderer.setPixelRatio(this.screenRatio);
         this.renderer.setSize(width, height, false);
-        this.backdrop = "";
-        this.overlay.width = Math.round(width * this.screenRatio);
-        this.overlay.height = Math.round(height * this.screenRatio);
+        this.backdrop = this.copied = "";
+        this.canvases.overlay.width = Math.round(width * this.screenRatio);
+        this.canvases.overlay.height = Math.round(height * this.screenRatio);
         this.invalidate();
     }
 
@@ -249,7 +276,7 @@ export class Stage {
 
     /** Also what does not move with the panels. */
     invalidateBackdrop(): void {
-        this.backdrop = "";
+        this.backdrop = this.copied = "";
         this.invalidate();
     }
 
@@ -271,6 +298,14 @@ export class Stage {
     hold(held: boolean): void {
         if (this.held && !held) this.invalidate();
         this.held = held;
+        this.expecting = false;
+    }
+
+    /** What the hand does will move panels: where that is slow, they are drawn in the quick way from now on. */
+    expect(): void {
+        if (this.expecting || !this.held || !this.slow) return;
+        this.expecting = true;
+        this.invalidate();
     }
 
     private schedule(): void {
@@ -384,6 +419,7 @@ export class Stage {
 
     /** True while a camera is on its way. */
     private draw(now: number, effort: Effort): boolean {
+        const before = this.drawnWith;
         this.stale = false;
         this.staleOverlay = true;
         this.drawnWith = effort;
@@ -392,12 +428,71 @@ export class Stage {
         for (const { orbit, state } of this.seen) moving = orbit.update(now, radiusOf(this.scenes![state].bounds)) || moving;
         const quick = effort === "quick";
         const backdrop = quick ? this.backdropNow() : "";
-        this.rendered = !quick || backdrop !== this.backdrop;
-        this.backdrop = backdrop;
-        if (this.rendered) this.render(effort);
-        this.quick.hidden = !quick;
-        if (quick) this.drawQuick();
+        const copied = quick && backdrop === this.copied;
+        this.rendered = !copied && (!quick || backdrop !== this.backdrop);
+        if (effort === "whole" && this.slow) this.copyBackdrop();
+        if (this.rendered) {
+            this.render(effort);
+            this.backdrop = backdrop;
+        }
+        const still = quick && !this.rendered && !this.override;
+        const live = still && this.showLive();
+        if (!still) this.live?.stop();
+        if (copied && before !== "quick" && this.live?.coming) {
+            this.drawnWith = before; // for a moment what is there will do
+            return moving;
+        }
+        if (quick && !live) this.drawQuick();
+        this.canvas.style.visibility = copied ? "hidden" : "";
+        this.canvases.ground.hidden = !copied;
+        this.canvases.quick.hidden = !quick || live;
+        this.canvases.apart.hidden = !live;
         return moving;
+    }
+
+    /** A worker draws states as they come in. */
+    get isLive(): boolean {
+        return !this.canvases.apart.hidden;
+    }
+
+    /** True when the worker's picture is there. */
+    private showLive(): boolean {
+        const { shell } = this;
+        const scene = shell && (shell.moving || this.expecting || this.isLive) && this.liveScene();
+        return scene ? this.live!.show(shell, scene) : false;
+    }
+
+    private liveScene(): LiveScene | null {
+        const { watch, colouring } = this;
+        if (!watch || !colouring || !this.scenes || !Live.possible) return null;
+        this.live ??= new Live(this.canvases.apart, watch, () => this.invalidate(), (stamps) => this.onStamped(stamps));
+        const sights = this.seen.map((view) => ({ ...this.setDetail(view, "quick").sight(this.windowOf(view)), state: view.state }));
+        return { ...this.pictureSize, sights, marks: this.scenes.flat.panels.shownMarks.slice(), ...colouring };
+    }
+
+    /** A picture of what lies under quick panels, so that they can begin without the renderer. */
+    private copyBackdrop(): void {
+        const backdrop = this.backdropNow();
+        if (backdrop === this.copied) return;
+        this.render("quick");
+        const { ground } = this.canvases;
+        Object.assign(ground, this.pictureSize);
+        ground.getContext("2d", { willReadFrequently: true })!.drawImage(this.canvas, 0, 0);
+        this.copied = backdrop;
+    }
+
+    /** While nothing else is to be done. */
+    private getReady(): void {
+        const scene = this.slow && !this.practised && this.liveScene();
+        if (!scene) return;
+        this.practised = true;
+        this.live!.practise(this.shell!, scene);
+    }
+
+    /** A view's part of the picture, in pixels. */
+    private windowOf({ rect, orbit: { camera } }: View): Window {
+        const [x, y, width, height] = [rect.x, rect.y, rect.width, rect.height].map((v) => Math.round(v * this.screenRatio));
+        return { x, y, width, height, matrix: new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements };
     }
 
     /** What the picture under quick panels depends on. */
@@ -436,27 +531,21 @@ export class Stage {
     }
 
     private drawQuick(): void {
-        const ratio = this.screenRatio;
-        const picture = this.quickPictureOf(Math.floor(this.width * ratio), Math.floor(this.height * ratio));
+        const { width, height } = this.pictureSize;
+        const picture = this.quickPictureOf(width, height);
         if (!picture) return;
         clear(picture);
-        const matrix = new THREE.Matrix4();
-        for (const view of this.seen) {
-            const { camera } = view.orbit;
-            const [x, y, width, height] = [view.rect.x, view.rect.y, view.rect.width, view.rect.height].map((v) => Math.round(v * ratio));
-            matrix.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
-            this.setDetail(view, "quick").drawQuick(picture, { x, y, width, height, matrix: matrix.elements });
-        }
+        for (const view of this.seen) this.setDetail(view, "quick").drawQuick(picture, this.windowOf(view));
         picture.context.putImageData(picture.image, 0, 0);
     }
 
     private quickPictureOf(width: number, height: number): QuickPicture | null {
         if (!(width * height > 0)) return null; // not laid out yet
         if (this.quickPicture?.width === width && this.quickPicture.height === height) return this.quickPicture;
-        Object.assign(this.quick, { width, height });
+        Object.assign(this.canvases.quick, { width, height });
         const picture = makePicture(width, height);
         const bytes = new Uint8ClampedArray(picture.pixels.buffer as ArrayBuffer);
-        const context = this.quickPicture?.context ?? this.quick.getContext("2d", { willReadFrequently: true })!;
+        const context = this.quickPicture?.context ?? this.canvases.quick.getContext("2d", { willReadFrequently: true })!;
         return (this.quickPicture = { ...picture, image: new ImageData(bytes, width, height), context });
     }
 
@@ -464,7 +553,7 @@ export class Stage {
         this.staleOverlay = false;
         clearTimeout(this.overlayTimer);
         this.overlayTimer = undefined;
-        const ratio = this.overlay.width / Math.max(1, this.width);
+        const ratio = this.canvases.overlay.width / Math.max(1, this.width);
         this.context2d.setTransform(ratio, 0, 0, ratio, 0, 0);
         this.context2d.clearRect(0, 0, this.width, this.height);
         for (const overlay of this.overlays) overlay(this.context2d, this);
@@ -473,10 +562,10 @@ export class Stage {
     /** Calls `done` when all that was drawn so far is, and learns from how long whole pictures take. */
     private fly(done?: () => void): void {
         const began = performance.now();
-        const effort = this.drawnWith;
+        const { drawnWith: effort, rendered } = this;
         const land = () => {
             this.flying = false;
-            if (effort === "whole") this.wholeTimes = [this.wholeTimes[1], performance.now() - began];
+            if (rendered && effort === "whole") this.wholeTimes = [this.wholeTimes[1], performance.now() - began];
             done?.();
             if (this.stale) this.schedule();
             else this.refineAfterRest();
@@ -502,6 +591,7 @@ export class Stage {
 
     /** What was left out while something moved is drawn soon after nothing does: better pictures, and the soft ground shadow. */
     private refineAfterRest(): void {
+        if (this.drawnWith === "whole") this.getReady();
         if (this.drawnWith === "whole" ? !this.dirtyGround : !this.refines) return;
         const due = this.changed + (!this.slow ? 80 : rests[this.drawnWith === "quick" ? 0 : 1]);
         this.restTimer = setTimeout(() => {
@@ -514,6 +604,7 @@ export class Stage {
 
     private drawGrounds(): void {
         this.dirtyGround = false;
+        this.copied = "";
         for (const scene of Object.values(this.scenes ?? {})) scene.drawGround(this.renderer);
     }
 
@@ -551,6 +642,7 @@ export class Stage {
         cancelAnimationFrame(this.request);
         clearTimeout(this.restTimer);
         clearTimeout(this.overlayTimer);
+        this.live?.dispose();
         this.setShell(null);
         cancelAnimationFrame(this.request);
         this.renderer.dispose();

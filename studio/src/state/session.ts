@@ -8,7 +8,7 @@ import type {
 } from "../protocol/types";
 import { medianEdge } from "../panels/linkage";
 import { Newest } from "./newest";
-import { gestureEnded, previewLeft, stateArrived } from "./latency";
+import { gestureEnded, previewLeft, stateArrived, statesGathered } from "./latency";
 import { Shell } from "../panels/shell";
 
 export type Connection = "connecting" | "open" | "lost";
@@ -165,6 +165,9 @@ export function acknowledge(): void {
     for (; unseen > 0; unseen--) link?.tell("seen");
 }
 
+/** Every state goes to the port at once and comes here gathered, from when `begun` is called, until null is given. */
+export const watchStates = (port: MessagePort | null, begun?: () => void): boolean => link?.watch(port, begun) ?? false;
+
 /** From now on states that come while `busy` wait for `acknowledge`, until the function that is returned is called. */
 export function holdStates(busy: () => boolean): () => void {
     held = busy;
@@ -196,19 +199,22 @@ function read(): void {
     revision.value++;
 }
 
-function receiveBinary(frame: Frame): void {
+function receiveBinary(frame: Frame, gathered: boolean): void {
     if (frame.kind !== kinds.state) {
         for (const listener of frameListeners) listener(frame, frame.kind === kinds.variant ? announcedVariant : null);
         return;
     }
-    unseen++;
+    if (gathered) statesGathered(frame);
+    else {
+        stateArrived(frame);
+        unseen++;
+    }
     if (!receiveState(frame) || !held() || document.hidden) acknowledge();
 }
 
 /** False when it is of a linkage that was replaced meanwhile. */
 function receiveState(frame: Frame): boolean {
     let linkage = false;
-    stateArrived(frame.serial);
     // documents count their linkages alike: what makes a new one is that its triangles come
     if (!shell || frame.topology !== shell.topology || frame.sections.has(section.triangles)) {
         if (!announced || announced.topology !== frame.topology || !frame.sections.has(section.triangles)) return false;
@@ -258,10 +264,19 @@ const previews = new Newest<OperatorCall | null>((operator) => {
 });
 const grabs = new Newest<{ hinge: number; to: [number, number, number] }>((g) => link?.tell("grab", { ...g, serial: link.nextSerial() }));
 
+/** Rises when the hand asks for states. */
+export const handAsks = signal(0);
+
 /** What the operator would do is shown at once; null: it is not to be done. */
-export const preview = (operator: OperatorCall | null) => previews.put(operator);
+export function preview(operator: OperatorCall | null): void {
+    previews.put(operator);
+    if (operator) handAsks.value++;
+}
 /** Holds a hinge at a place of the document's frame while the solver runs. */
-export const grab = (hinge: number, to: [number, number, number]) => grabs.put({ hinge, to });
+export function grab(hinge: number, to: [number, number, number]): void {
+    grabs.put({ hinge, to });
+    handAsks.value++;
+}
 
 export function release(): void {
     grabs.drop();

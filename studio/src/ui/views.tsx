@@ -45,6 +45,8 @@ export function Views() {
     const place = useRef<HTMLDivElement>(null);
     const canvas = useRef<HTMLCanvasElement>(null);
     const quick = useRef<HTMLCanvasElement>(null);
+    const ground = useRef<HTMLCanvasElement>(null);
+    const apart = useRef<HTMLCanvasElement>(null);
     const overlay = useRef<HTMLCanvasElement>(null);
     const rects = useSignal<Partial<Record<ViewId, Rect>>>({});
     const size = useSignal({ width: 0, height: 0 });
@@ -53,7 +55,7 @@ export function Views() {
     useLayoutEffect(() => {
         let stage: Stage;
         try {
-            stage = new Stage(canvas.current!, quick.current!, overlay.current!);
+            stage = new Stage({ canvas: canvas.current!, ground: ground.current!, quick: quick.current!, apart: apart.current!, overlay: overlay.current! });
         } catch {
             failed.value = "This browser has no WebGL 2, which the views need. Switch it on, or use another browser.";
             return;
@@ -88,7 +90,9 @@ export function Views() {
         <div class="views" ref={place} role="region" aria-label="Views" style={{ cursor: tool.value.cursor }}>
             {ids.map((id) => <div key={id} class="view-ground" style={box(rects.value[id]!)} />)}
             <canvas ref={canvas} aria-hidden="true" />
+            <canvas ref={ground} class="over" aria-hidden="true" hidden />
             <canvas ref={quick} class="over" aria-hidden="true" hidden />
+            <canvas ref={apart} class="over" aria-hidden="true" hidden />
             <canvas ref={overlay} class="over" aria-hidden="true" />
             {ids.map((id) => <ViewFrame key={id} id={id} rect={rects.value[id]!} many={ids.length > 1} />)}
             {ids.includes("flat") && ids.includes("deployed") && ids.length === 2 && <Divider width={size.value.width} />}
