@@ -701,7 +701,11 @@ export const scenarios = {
             await hand.stepsAre("start_circle", "gradient_radial", "rim_circle", "inflation", "paint");
             assert.ok(samples.length >= 5, `${samples.length} previews were shown`);
             assert.equal(most, 1, "pictures with the renderer");
-            for (const s of samples) assert.ok(s.moved <= s.sent && s.sent <= s.arrived && s.arrived <= s.began && s.began <= s.submitted && s.submitted <= s.drawn, JSON.stringify(s));
+            const step = 0.2; // two threads' clocks are rounded, each by itself
+            for (const s of samples) {
+                const times = [s.moved, s.sent, s.arrived, s.came, s.began, s.submitted, s.drawn];
+                assert.ok(times.every((v, k) => k === 0 || times[k - 1] <= v + step), JSON.stringify(s));
+            }
             const all = samples.map((s) => s.drawn - s.moved).sort((a, b) => a - b);
             note(`${all.length} previews shown, median ${all[all.length >> 1].toFixed(0)} ms, p95 ${all[Math.floor(0.95 * all.length)].toFixed(0)} ms from hand to screen, in software`);
         });
