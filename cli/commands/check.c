@@ -135,19 +135,12 @@ static ax_status draw(const arguments* a, const ax_mesh* mesh, const ax_screen* 
     return status;
 }
 
-// The surface itself, if it bulges outwards; nothing if no part of it does.
-static ax_status write_nearest(const char* path, const ax_mesh* mesh, const ax_screen* screen, ax_error* error)
+// The surface itself, if it deploys; NULL if no part of it bulges outwards.
+static const ax_mesh* nearest_of(const ax_mesh* mesh, const ax_screen* screen)
 {
-    if (screen->projection.steps == 0 && screen->verdict != AX_DEPLOYABLE)
-        return AX_OK;
-    ax_mesh nearest = ax_mesh_copy(mesh);
-    ax_projection projection;
-    ax_status status = ax_target_project(&nearest, progress_reporter(), &projection, error);
-    progress_end();
-    if (status == AX_OK)
-        status = ax_mesh_write(&nearest, path, error);
-    ax_mesh_free(&nearest);
-    return status;
+    if (screen->nearest.face_count)
+        return &screen->nearest;
+    return screen->verdict == AX_DEPLOYABLE ? mesh : NULL;
 }
 
 static ax_status run(const void* given, ax_error* error)
@@ -170,13 +163,16 @@ static ax_status run(const void* given, ax_error* error)
     progress_end();
     if (status == AX_OK && a->png)
         status = draw(a, &mesh, &screen, error);
-    if (status == AX_OK && a->nearest)
-        status = write_nearest(a->nearest, &mesh, &screen, error);
+    const ax_mesh* nearest = a->nearest ? nearest_of(&mesh, &screen) : NULL;
+    if (status == AX_OK && nearest)
+        status = ax_mesh_write(nearest, a->nearest, error);
     if (status == AX_OK) {
         if (a->json)
             json_print(screen_json(&mesh, &repairs, &screen), stdout);
         else
             print_screen(a, &mesh, &repairs, &screen);
+        if (a->nearest && !a->json)
+            printf(nearest ? "Wrote %s\n" : "Wrote no %s: there is no such surface\n", a->nearest);
         if (screen.verdict == AX_NOT_DEPLOYABLE)
             status = AX_CANNOT_REALISE;
     }

@@ -45,6 +45,7 @@ typedef struct ax_screen {
     ax_verdict verdict;
     bool by_inflation, by_gravity; // how it deploys, as it is or after projection
     ax_projection projection;      // what the projection does, where H > 0 fails; else zero
+    ax_mesh nearest;               // the projected surface; empty without one. Owned
     char words[1024];              // the verdict in sentences
     int vertex_count;
     double* curvature;        // H per vertex (one-ring average), owned

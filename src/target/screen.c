@@ -27,6 +27,7 @@ void ax_screen_free(ax_screen* screen)
     ax_free(screen->curvature);
     ax_free(screen->scale);
     ax_flattening_free(&screen->flattening);
+    ax_mesh_free(&screen->nearest);
     *screen = (ax_screen){0};
 }
 
@@ -232,7 +233,7 @@ static ax_status try_projection(ax_screen* screen, const ax_mesh* mesh, const ax
         ax_curvature_free(&curvature);
         ax_flattening_free(&fit.flattening);
     }
-    ax_mesh_free(&projected);
+    screen->nearest = projected;
     return status;
 }
 
