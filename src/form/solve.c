@@ -587,6 +587,25 @@ void ax_form_restart(ax_form* f, double height)
     ax_form_changed(f, false, true);
 }
 
+// While a fresh sheet opens, its load leans on it, spread evenly: what lies between a painted dome and a rim with too little room for it
+// opens upwards or downwards with equal ease, and as fairness has it, against the load. Panels keep their sizes meanwhile, so that
+// nothing yields to it.
+static void lean(ax_form* f, bool on)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    int n = linkage->hinge_count;
+    bool weight = f->dynamics.kind == AX_DYNAMICS_GRAVITY;
+    const double up[3] = {0, 0, 1}, *along = weight ? f->dynamics.load.direction : up;
+    memset(f->scratch, 0, 2 * (size_t)n * sizeof *f->scratch);
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double side = ax_form_side(f, t), share = sqrt(3) * side * side / 3; // it carries four times its area
+        for (int k = 0; k < 3; ++k)
+            for (int c = 0; c < 3; ++c)
+                f->scratch[n + linkage->triangles[t][k]][c] += load_strain / f->radius * share * along[c];
+    }
+    ax_solver_set_load(f->shape, on ? (const double(*)[3])f->scratch : NULL);
+}
+
 // States as they were before a call that is cancelled.
 typedef struct snapshot {
     double (*flat)[2], (*deployed)[3], (*simulated)[3], (*side)[3], *multipliers, growth;
@@ -681,8 +700,13 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
         ax_form_restart(f, 0.05), fresh = true;
     if (fresh) { // panels that give way before the holes are open settle for a flatter shape, and leave it slowly
+        bool leans = ax_form_hangs(f) && ax_form_shares(f);
         allow_give(f, false);
+        if (leans)
+            lean(f, true);
         iterate_shape(f, limit / 4);
+        if (leans)
+            lean(f, false);
         allow_give(f, true);
     }
     bool going = run(f, true, limit, iterations <= 0, progress, "Shaping the sheet", 0, ax_form_hangs(f) ? 0.5 : 1);
