@@ -656,6 +656,60 @@ export const scenarios = {
         });
     },
 
+    async "every format is seen before it is exported"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            await hand.key("Control+e");
+            const dialog = page.getByRole("dialog");
+            const formats = await dialog.getByRole("radio").count();
+            assert.ok(formats >= 20, `${formats} formats`);
+            for (let k = 0; k < formats; k++) {
+                await dialog.getByRole("radio").nth(k).click();
+                await page.waitForFunction(() => {
+                    const seen = document.querySelector('[aria-label="Preview"]');
+                    const picture = seen.querySelector(".paper img");
+                    return (picture?.complete && picture.naturalWidth > 100) || seen.querySelectorAll("tbody tr").length > 3;
+                }, null, { timeout: 60000 }).catch(async () => assert.fail(`nothing is seen of ${await dialog.getByRole("radio").nth(k).textContent()}`));
+            }
+        });
+    },
+
+    async "four views: the shell is free of legend and buttons, and a view that is enlarged stays what it is"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            await hand.key("4");
+            for (const [width, height] of [[1280, 800], [1440, 900], [1920, 1080]]) {
+                await page.setViewportSize({ width, height });
+                await page.waitForTimeout(300);
+                const covered = await page.evaluate(() => {
+                    const stage = auxshell.stage.value;
+                    const corner = stage.canvas.getBoundingClientRect();
+                    const Place = stage.views.top.orbit.camera.position.constructor;
+                    const boxes = [...document.querySelectorAll(".legend, .view-tools .segments")].map((e) => [e.className, e.getBoundingClientRect()]);
+                    const found = {};
+                    for (const id of stage.shown) {
+                        const { places } = stage.skins[stage.views[id].state];
+                        for (let k = 0; k < places.length; k += 3) {
+                            const at = stage.project(stage.views[id], new Place().fromArray(places, k));
+                            for (const [name, box] of boxes) {
+                                const [x, y] = [at.x + corner.left, at.y + corner.top];
+                                if (x > box.left && x < box.right && y > box.top && y < box.bottom) found[`${id} ${name}`] = (found[`${id} ${name}`] ?? 0) + 1;
+                            }
+                        }
+                    }
+                    return found;
+                });
+                assert.deepEqual(covered, {}, `hinges that are covered at ${width} x ${height}`);
+            }
+            await page.getByRole("button", { name: "Only front" }).click();
+            await page.waitForFunction(() => auxshell.stage.value.shown.length === 1);
+            assert.deepEqual(await page.evaluate(() => {
+                const { deployed } = auxshell.stage.value.views;
+                return [auxshell.stage.value.shown[0], deployed.orbit.preset, deployed.orbit.pose.projection];
+            }), ["deployed", "front", "parallel"]);
+        }, { reducedMotion: "reduce" });
+    },
+
     async "the tour has five steps, once"(browser) {
         const studio = await studioOn([circle]);
         try {

@@ -318,8 +318,14 @@ export class Stage {
         if (!scene || view.rect.width === 0) return;
         const { azimuth, elevation, projection } = view.orbit.pose;
         const share = view.state === "flat" ? 0.86 : 0.88;
-        const pose = view.orbit.framed(scene.panels.places, { azimuth, elevation, projection }, view.rect.width, view.rect.height, share,
-            view.state === "flat" ? 0.04 : 0.05);
+        // in low views titles and buttons take much of the top, and the legend stands beside the sheet
+        const { width, height } = view.rect;
+        const low = height < 420;
+        const beside = view.state === "flat" && height < 560 && width > 400 ? (low ? 220 : 270) : 0;
+        const pose = view.orbit.framed(scene.panels.places, { azimuth, elevation, projection }, width - beside, height, share, low ? -0.05 : view.state === "flat" ? 0.04 : 0.05);
+        const across = (pose.distance * Math.tan(Math.PI / 12) * beside) / height;
+        const right = azimuth * (Math.PI / 180);
+        pose.target = [pose.target[0] + Math.sin(right) * across, pose.target[1] - Math.cos(right) * across, pose.target[2]];
         view.orbit.go(pose, animated);
         view.orbit.touched = false;
         this.invalidate();
@@ -556,7 +562,24 @@ export class Stage {
         const ratio = this.canvases.overlay.width / Math.max(1, this.width);
         this.context2d.setTransform(ratio, 0, 0, ratio, 0, 0);
         this.context2d.clearRect(0, 0, this.width, this.height);
+        this.drawFloors();
         for (const overlay of this.overlays) overlay(this.context2d, this);
+    }
+
+    /** Seen from the side the grid is a line. */
+    private drawFloors(): void {
+        for (const { rect, state, orbit } of this.seen) {
+            if (state !== "space" || orbit.pose.projection !== "parallel" || Math.abs(orbit.pose.elevation) > 0.5) continue;
+            const { min } = this.scenes!.space.bounds;
+            const y = Math.round(rect.y + ((1 - new THREE.Vector3(min[0], min[1], this.scenes!.space.floor).project(orbit.camera).y) / 2) * rect.height) + 0.5;
+            if (y < rect.y || y > rect.y + rect.height) continue;
+            this.context2d.strokeStyle = this.look.gridMajor;
+            this.context2d.lineWidth = 1;
+            this.context2d.beginPath();
+            this.context2d.moveTo(rect.x, y);
+            this.context2d.lineTo(rect.x + rect.width, y);
+            this.context2d.stroke();
+        }
     }
 
     /** Calls `done` when all that was drawn so far is, and learns from how long whole pictures take. */

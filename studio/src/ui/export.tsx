@@ -7,7 +7,8 @@ import { ask, currentShell, documentState, hello, report, revision, status } fro
 import { download, savePicture } from "../state/commands";
 import { record } from "../state/video";
 import { saveRhino } from "../rhino/save";
-import { dialog } from "../state/view";
+import { pictureUrl, thumbnail } from "../scene/thumbnail";
+import { dialog, stage } from "../state/view";
 import { Button, Choice, Dialog, Row, Section } from "./controls";
 import { bytes, count, plural } from "./format";
 import { Icon } from "./icons";
@@ -28,6 +29,10 @@ const ownFormats = [
     { id: "deployment", group: "Picture", title: "Deployment", side: "video", doc: "The states that the solver goes through from flat to deployed, as WebM.", run: () => record("deployment") },
 ];
 const isCut = (ending: string) => groups[0].endings.test(ending);
+/** The format whose pictures show what a file of this one holds: drawings of the sheets have the same parts. */
+const seenAs = (ending: string) => (/^\.(svg|dxf|r12\.dxf|pdf|a4\.pdf)$/.test(ending) ? ".svg" : ending === ".png" || ending === ".csv" ? ending : null);
+/** The first lines of a table. */
+const rowsOf = (csv: string) => csv.split("\n").filter((line) => line && !line.startsWith("#")).slice(0, 24).map((line) => line.trimEnd().split(","));
 /** A cut file as it is looked at: lines of a tenth of a millimetre on metres of sheet would not be seen. */
 function seen(svg: string): string {
     const width = Number(/viewBox="[-\d.]+ [-\d.]+ ([\d.]+)/.exec(svg)?.[1] ?? 0);
@@ -50,16 +55,17 @@ export function ExportDialog() {
     const busy = useSignal(false);
     const wrong = useSignal("");
     const looked = useSignal<{ urls: string[]; names: string[]; at: number } | null>(null);
+    const rows = useSignal<string[][] | null>(null);
     const exporter = exporters.find((e) => dotted(e) === ending.value);
     const shell = currentShell();
     const has = (s: StateName) => s !== "simulated" || shell?.simulated !== null;
 
-    const run = async (): Promise<ExportedFile[] | null> => {
-        if (!exporter) return null;
+    const run = async (as = exporter): Promise<ExportedFile[] | null> => {
+        if (!as) return null;
         wrong.value = "";
         busy.value = true;
         try {
-            const answer = await ask("export", { ending: exporter.ending, ...(state.value ? { state: state.value } : {}), ...(isCut(ending.value) ? cutWords(cutOptions.value) : {}) });
+            const answer = await ask("export", { ending: as.ending, ...(state.value ? { state: state.value } : {}), ...(isCut(ending.value) ? cutWords(cutOptions.value) : {}) });
             plan.value = answer.plan as Plan | null;
             return answer.files as ExportedFile[];
         } catch (error) {
@@ -70,18 +76,34 @@ export function ExportDialog() {
         }
     };
 
-    // the preview is the file itself, as it would be cut
+    // the preview is the file itself, as it would be cut; of models it is the state that they hold
     useEffect(() => {
         let current = true;
         const made: string[] = [];
         looked.value = null;
         files.value = null;
         plan.value = null;
+        rows.value = null;
         wrong.value = "";
-        if (ending.value === ".svg" || ending.value === ".png")
-            void run().then(async (list) => {
+        const as = exporters.find((e) => dotted(e) === seenAs(ending.value));
+        const show = (canvas: HTMLCanvasElement | Blob, name: string) => void (canvas instanceof Blob ? Promise.resolve(URL.createObjectURL(canvas)) : pictureUrl(canvas)).then((url) => {
+            made.push(url);
+            if (current) looked.value = { urls: [url], names: [name], at: 0 };
+        });
+        if (ownFormats.some((o) => o.id === ending.value && o.group === "Picture")) void stage.value?.picture().then((blob) => show(blob, "The views as they are"));
+        else if (!as && shell) {
+            const shown: StateName = state.value || exporter?.default_state || "deployed";
+            const places = shown === "flat" ? shell.flat : shown === "simulated" && shell.simulated ? shell.simulated : shell.deployed;
+            show(thumbnail(shell.linkage, places, shell.realised, 1200, 760), `${shown.charAt(0).toUpperCase()}${shown.slice(1)} state`);
+        } else if (as)
+            void run(as).then(async (list) => {
                 if (!list || !current) return;
-                files.value = list;
+                if (as === exporter) files.value = list;
+                if (dotted(as) === ".csv") {
+                    const table = rowsOf(await (await fetch(list[0].url)).text());
+                    if (current) rows.value = table;
+                    return;
+                }
                 const sheets = list.length > 1 ? list.filter((f) => /-\d+\.\w+$/.test(f.name)) : list;
                 const urls: string[] = [];
                 for (const f of sheets.slice(0, 12)) {
@@ -96,7 +118,7 @@ export function ExportDialog() {
             current = false;
             made.forEach((u) => URL.revokeObjectURL(u));
         };
-    }, [ending.value, state.value, cutOptions.value]);
+    }, [ending.value, state.value, isCut(ending.value) && cutOptions.value]);
 
     const exportNow = async () => {
         const own = ownFormats.find((o) => o.id === ending.value);
@@ -155,7 +177,7 @@ export function ExportDialog() {
                     {wrong.value && <p class="note bad" role="alert"><Icon name="crossed" />{wrong.value}</p>}
                     {looked.value && looked.value.urls.length > 0 ? (
                         <>
-                            <div class="spread"><b>{looked.value.urls.length > 1 ? `Sheet ${looked.value.at + 1} of ${looked.value.names.length}` : looked.value.names[0]}</b></div>
+                            <div class="spread"><b>{looked.value.urls.length > 1 ? `Sheet ${looked.value.at + 1} of ${looked.value.names.length}` : seenAs(ending.value) === ending.value || !isCut(ending.value) ? looked.value.names[0] : "The sheet"}</b></div>
                             <div class="paper"><img src={looked.value.urls[looked.value.at]} alt={`What ${looked.value.names[looked.value.at]} holds`} /></div>
                             {looked.value.urls.length > 1 && (
                                 <div class="thumbs">
@@ -163,6 +185,10 @@ export function ExportDialog() {
                                 </div>
                             )}
                         </>
+                    ) : rows.value ? (
+                        <div class="table-view">
+                            <table><thead><tr>{rows.value[0].map((c, k) => <th key={k} scope="col">{c}</th>)}</tr></thead><tbody>{rows.value.slice(1).map((r, i) => <tr key={i}>{r.map((c, k) => <td key={k}>{c}</td>)}</tr>)}</tbody></table>
+                        </div>
                     ) : (
                         <div class="empty"><span>{busy.value ? "Making it." : ownFormats.find((o) => o.id === ending.value)?.doc ?? exporter?.doc ?? ""}</span></div>
                     )}

@@ -113,10 +113,11 @@ function ViewFrame({ id, rect, many }: { id: ViewId; rect: Rect; many: boolean }
     const toggle = () => {
         if (mode.value === "analyse") return;
         layout.value = many ? (id === "flat" ? "flat" : "deployed") : "both";
+        if (many && (id === "top" || id === "front")) stage?.views.deployed.usePreset(id);
     };
     return (
         <div class="view-frame" style={box(rect)}>
-            <div class="view-title" onDblClick={toggle}><ViewTitle id={id} short={rect.width < (mode.value === "analyse" ? 760 : id === "deployed" ? 560 : 260)} /></div>
+            <div class="view-title" onDblClick={toggle}><ViewTitle id={id} short={rect.width < (mode.value === "analyse" ? 760 : id === "deployed" ? 520 : 260)} /></div>
             <div class="view-tools">
                 {id === "deployed" && mode.value === "analyse" && <AnalyseFields />}
                 {id === "deployed" && mode.value !== "analyse" && rect.width > 520 && view && <Presets view={view} />}
@@ -142,7 +143,7 @@ function ViewTitle({ id, short }: { id: ViewId; short: boolean }) {
     return (
         <>
             <b>{name}</b>
-            {!short && <span>{flat || mode.value === "analyse" ? `${count(shell.linkage.panels)} panels, ` : ""}{extent(b.min, b.max, flat ? 2 : 3, unit)}</span>}
+            {!short && <span>{flat || mode.value === "analyse" ? `${count(shell.linkage.panels)} panels, ` : ""}{id === "front" ? extent([b.min[0], b.min[2]], [b.max[0], b.max[2]], 2, unit) : extent(b.min, b.max, flat || id === "top" ? 2 : 3, unit)}</span>}
         </>
     );
 }
