@@ -23,8 +23,8 @@ typedef struct ax_assembly {
     int* step_of; // per panel
     ax_assembly_step* steps;
     bool by_pieces;
-    double along
-        [2]; // unit, in the flat state: the direction in which rows run, places counting up; rows then count to its left
+    // Unit, in the flat state: the direction in which rows run, places counting up; rows then count to its left.
+    double along[2];
 } ax_assembly;
 
 void ax_assembly_free(ax_assembly* assembly); // also resets to an empty assembly; NULL allowed
@@ -53,11 +53,10 @@ typedef struct ax_frame_curve {
     bool closed, arch;
     double length, plan; // of its chords; of the smooth curve, seen from above
     bool planar;         // within AX_FRAME_TOLERANCE, as `circle` is
-    double off_plane,
-        off_circle; // largest distance from the plane and from the circle that fit best; NaN: too few points
-    double origin[3],
-        axes[3]
-            [3]; // of the plane: axes[2] its normal, not downwards; axes[0] near the document's x, or level if the plane stands
+    // Largest distances from the plane and from the circle that fit best; NaN: too few points.
+    double off_plane, off_circle;
+    // Of the plane: axes[2] its normal, not downwards; axes[0] near the document's x, or level if the plane stands.
+    double origin[3], axes[3][3];
     bool circle; // planar and of four or more points
     double centre[3], radius;
 } ax_frame_curve;

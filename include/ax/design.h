@@ -9,8 +9,8 @@ typedef enum ax_border {
     AX_BORDER_RELEASED,    // border triangles may deviate from equilateral
     AX_BORDER_INSIDE,      // whole triangles inside the boundary curve
 } ax_border;
-const char* ax_border_name(ax_border border); // "equilateral", "released", "inside"
-bool ax_border_parse(const char* name, ax_border* border);
+const char* ax_border_name(ax_border border);              // "equilateral", "released", "inside"
+bool ax_border_parse(const char* name, ax_border* border); // false: there is no such word; so below
 
 typedef enum ax_load_kind { AX_LOAD_NONE, AX_LOAD_GRAVITY, AX_LOAD_INFLATION } ax_load_kind;
 const char* ax_load_kind_name(ax_load_kind kind); // "none", "gravity", "inflation"
@@ -62,8 +62,7 @@ ax_refinement ax_design_refine_target(ax_mesh* target, const ax_design_options* 
 typedef enum ax_freedom { AX_HELD_FAST, AX_FREE_ALONG, AX_FREE_ACROSS } ax_freedom;
 typedef struct ax_slide {
     ax_freedom freedom;
-    double
-        axis[3]; // unit: the tangent of a curve, along which it slides, or the normal of a plane, across which it does
+    double axis[3]; // unit: the tangent of the curve along which, or the normal of the plane across which it slides
 } ax_slide;
 
 // Every figure of the report. Lengths "over L" are divided by the mean triangle edge L; NaN where a state is missing.

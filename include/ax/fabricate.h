@@ -16,7 +16,7 @@ typedef struct ax_material {
     double stiffness;       // MPa, Young's modulus
     bool bends;             // a narrow ligament by a hundred degrees in its plane, and does not break
 } ax_material;
-const ax_material* ax_materials(int* count);
+const ax_material* ax_materials(int* count);            // all that are known
 const ax_material* ax_material_named(const char* name); // NULL: none
 
 // --- joints
@@ -66,7 +66,7 @@ typedef struct ax_profile {
     ax_profile_pen pens[AX_OPERATIONS];
     double travel_speed; // mm/s
 } ax_profile;
-const ax_profile* ax_profiles(int* count);
+const ax_profile* ax_profiles(int* count); // all that are known
 // `name` of a profile, or the path of a JSON file (docs/making.md) that ends in .json. AX_USAGE names the known ones,
 // AX_BAD_INPUT what is wrong in the file.
 ax_status ax_profile_find(const char* name, ax_profile* profile, ax_error* error);
@@ -160,8 +160,8 @@ typedef struct ax_cut_plan {
     ax_cut_path* paths;
     ax_cut_item* items;
     ax_cut_sheet* sheets; // to be cut
-    ax_cut_sheet
-        overview; // all panels in place with name and sheet ("C14/2"), NOTE only; empty (count 0) if there is one sheet
+    // All panels in place with name and sheet ("C14/2"), NOTE only; empty (count 0) if there is one sheet.
+    ax_cut_sheet overview;
     ax_cut_panel* panels;
     ax_cut_hinge* hinges;
     ax_cut_clash* clashes; // at most AX_CLASHES of them are kept; clash_count counts these
@@ -221,11 +221,11 @@ typedef struct ax_fabricate_options {
     int frames;                // with it: states between flat and open to prove it in, 0 to 1000
     int sizes;                 // of panels that the schedule proposes, at most; 0: see ax_cluster_within
     const char* title;         // for notes, NULL: none
-    // of the recipe, as it shall be printed, NULL: none. Never the day of export: the same design gives the same bytes
+    // For notes, NULL: none; the recipe's day and never that of the export: the same design gives the same bytes.
     const char* date;
 } ax_fabricate_options;
-ax_fabricate_options ax_fabricate_options_default(
-    void); // bare triangles, card, one sheet, kerf 0, clearance proven, also in 7 states between
+// Bare triangles, card, one sheet, kerf 0, clearance proven, also in 7 states between.
+ax_fabricate_options ax_fabricate_options_default(void);
 
 // Reads "ring", or "ring:hole=4,edge=3" with parameters; "plywood-3", or "plywood-3:thickness=2.9" with density (kg/m3), feature (mm)
 // and strength (MPa) likewise; "600x400", or a preset's name. AX_USAGE says what is known and what the range is.

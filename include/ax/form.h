@@ -85,8 +85,8 @@ typedef enum ax_dynamics_kind {
 
 typedef struct ax_form_dynamics {
     ax_dynamics_kind kind;
-    ax_load
-        load; // kind, direction, density or pressure, for reports and the exact stage: the shape does not depend on its size
+    // Kind, direction, density or pressure, for reports and the exact stage: the shape does not depend on its size.
+    ax_load load;
     bool adapt;      // panel sizes may give way a little so that holes open fully within rim and constraints
     double give;     // how easily they do: 0 not at all, default 3, at most 100
     bool adopt;      // finishing takes the loaded state as the deployed one: what hangs is the design
@@ -108,7 +108,7 @@ typedef enum ax_held_kind {
     AX_HELD_ROTATION, // orbits (`order` hinges each), about the axis `point`, `direction`
     AX_HELD_FAIR,     // kagome lines through these hinges bend evenly
 } ax_held_kind;
-const char* ax_held_kind_name(ax_held_kind kind);
+const char* ax_held_kind_name(ax_held_kind kind); // "plane", "plane given", ...
 
 typedef struct ax_form_constraint {
     const char* name; // unique; the report and later edits call it so
@@ -197,6 +197,7 @@ const double* ax_form_material(ax_form* form);
 // deployed one. Freed by ax_design_free.
 void ax_form_snapshot(ax_form* form, bool loaded, ax_design* design);
 
+// What was asked, borrowed until the next change. Return how many there are.
 int ax_form_rim(const ax_form* form, const ax_rim_part** parts);
 int ax_form_constraints(const ax_form* form, const ax_form_constraint** constraints);
 int ax_form_underlays(const ax_form* form, const char*** names, const ax_mesh** meshes, const double** clearances);
@@ -232,9 +233,9 @@ typedef struct ax_form_report {
     int mouth_hinge;
     int flipped, overlap_pairs; // in the flat state; overlaps deeper than 1e-6 L
     int scale_judged;           // panels whose scale factor can be told: no border panels, nor those beside them
-    double realised_min, realised_max, scale_off_rms,
-        scale_off_max;      // |realised - prescribed| of these; without any 0, and
-    int scale_off_triangle; // -1, and the least and greatest of all panels
+    // Least and greatest factor of these, and |realised - prescribed|; without any: of all panels, 0, and -1.
+    double realised_min, realised_max, scale_off_rms, scale_off_max;
+    int scale_off_triangle;
     double opening_min, opening_mean;
     double overhang;      // share of panels that look down: no height field
     double curvature_max; // painted curvature summed over the worst disc, radians; above 2 pi the surface turns over

@@ -58,8 +58,8 @@ typedef struct ax_operator_type {
     // What must hold between fields: NULL, or what is wrong in words, and *field the one to blame (-1: the whole). NULL: nothing.
     const char* (*check)(const void* arguments, int* field);
     bool starts; // makes the form: only at the first place
-    bool
-        settles; // the form is settled after it, for as many iterations as its integer field "steps" says (0: until at rest)
+    // The form is settled after it, for as many iterations as its integer field "steps" says (0: until at rest).
+    bool settles;
     // On failure the form is as it was.
     ax_status (*apply)(const ax_operator_context* context, const void* arguments, ax_error* error);
 } ax_operator_type;

@@ -26,8 +26,8 @@ typedef struct ax_session_start {
     const char* program; // who edits, for others that open the document: "auxshell studio"; NULL: "another program"
     void (*played)(void* context, int k, const char* words); // called after step k was applied; NULL: not
     void* context;
-    ax_session**
-        session;  // set while steps are played, for their progress: ax_session_making shows how far it is; NULL: not
+    // Set while steps are played, for their progress: ax_session_making shows how far it is. NULL: not.
+    ax_session** session;
     ax_keep keep; // when to succeed with the steps before one that fails (see ax_session_failed)
 } ax_session_start;
 ax_status ax_session_create(const char* path, const ax_session_start* start, const ax_progress* progress,

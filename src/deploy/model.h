@@ -67,8 +67,8 @@ double ax_deploy_along(const ax_deploy_model* model, int h, const double x[3]);
 // corner or an end towards which it is pulled from both sides.
 typedef struct ax_deploy_frame {
     double allowed[3][3];
-    double
-        bend; // second derivative of `gradient` . x along the curve, which bends the energy though its gradient is constant
+    // Second derivative of `gradient` . x along the curve, which bends the energy though its gradient is constant.
+    double bend;
 } ax_deploy_frame;
 // `gradient` of the Lagrangian, per hinge.
 void ax_deploy_frames(const ax_deploy_model* model, const double (*x)[3], const double (*gradient)[3],
