@@ -164,6 +164,19 @@ class Check(CommandCase):
             self.assertEqual((self.folder / name).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
 
 
+class Size(CommandCase):
+    def test_a_target_is_scaled_to_the_length_wanted(self):
+        recipe, words = self.folder / "r.json", ("--size", "1200", "--units", "mm", "--triangles", "300")
+        self.succeed("design", DOME, "-o", self.folder / "a.auxshell", *words)
+        start = {"op": "start_target", "file": str(DOME), "unit": "mm", "size": 1200, "triangles": 300}
+        recipe.write_text(json.dumps({"format": "auxshell-recipe", "version": 1, "operators": [start]}))
+        self.succeed("run", recipe, "-o", self.folder / "b.auxshell")
+        for name in ("a.auxshell", "b.auxshell"):
+            bounds = json.loads(self.succeed("info", self.folder / name, "--json"))["report"]["deployed_bounds"]
+            self.assertAlmostEqual(max(bounds) / 1200, 1, delta=0.02)
+        self.refuse(2, "more than 0", "design", DOME, "-o", self.folder / "c.auxshell", "--size", "0")
+
+
 class Awkward(CommandCase):
     """The zoo of awkward meshes is fed to every command that reads."""
 

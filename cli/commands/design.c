@@ -27,6 +27,7 @@ typedef struct arguments {
     const char *target, *out;
     int up;
     bool refine;
+    double size;
     ax_design_options design;
     flatten_choice flatten; // go into `design` when it runs
     angle_choice angle;
@@ -122,6 +123,14 @@ static const command_option options[] = {
      .offset = offsetof(arguments, design.load.kind)},
     OPTION_UNITS(arguments, design.unit, .first = AX_MILLIMETRE),
     OPTION_UP(arguments, up),
+    {.name = "--size",
+     .value = "LEN",
+     .text = "scale the target until the longest of its extents in x, y and z is this, in --units",
+     .kind = OPTION_NUMBER,
+     .hi = INFINITY,
+     .open = true,
+     .fallback = "as in the file",
+     .offset = offsetof(arguments, size)},
     OPTION_SCALE(arguments, design.target.scale_lo),
     {.name = "--mouth-min",
      .value = "DEG",
@@ -179,13 +188,16 @@ static void doubt_unit(const ax_design* d)
 }
 
 // `read` has the vertices and faces of the target as it was read.
-static void print_steps(const arguments* a, const int read[2], const ax_refinement* refinement, const ax_design* d)
+static void print_steps(const arguments* a, const int read[2], double factor, const ax_refinement* refinement,
+                        const ax_design* d)
 {
     const ax_report* r = &d->report;
     const char* unit = ax_unit_name(d->unit);
     char load[96];
     printf("Read        %s: %d vertices, %d faces; mended: ", a->target, read[0], read[1]);
     repairs_print(&d->repairs, stdout);
+    if (a->size > 0)
+        printf("Scaled      by %.6g: %.5g %s long\n", factor, a->size, unit);
     doubt_unit(d);
     if (refinement->rounds)
         printf("Refined     %d times: %d faces; %.4g %s off its vertices at most\n", refinement->rounds,
@@ -233,6 +245,7 @@ static ax_status run(const void* given, ax_error* error)
     if (status == AX_OK)
         status = ax_mesh_read(a->target, &read, &mesh, &repairs, error);
     const int counts[2] = {mesh.vertex_count, mesh.face_count};
+    const double factor = status == AX_OK && a->size > 0 ? ax_mesh_resize(&mesh, a->size) : 1;
     if (status == AX_OK && a->refine)
         refinement = ax_design_refine_target(&mesh, &wanted);
     if (status == AX_OK)
@@ -245,7 +258,7 @@ static ax_status run(const void* given, ax_error* error)
         ax_error unsaved;
         ax_status saved = ax_document_save(a->out, &design, &unsaved);
         if (saved == AX_OK) {
-            print_steps(a, counts, &refinement, &design);
+            print_steps(a, counts, factor, &refinement, &design);
             report_print(&design, stdout);
             printf("\nWrote %s: %d triangles, %.2f s in all.\n", a->out, design.linkage.triangle_count,
                    design.report.seconds_total);

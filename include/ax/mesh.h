@@ -59,6 +59,9 @@ ax_status ax_mesh_make_surface(ax_mesh* mesh, ax_mesh_repairs* repairs, ax_error
 // Writes a mesh as OBJ, whole or not at all; vertex k + 1 is positions[k], exactly. AX_FAILED when it cannot be written.
 ax_status ax_mesh_write(const ax_mesh* mesh, const char* path, ax_error* error);
 
+// Scales about the origin until the longest of its extents in x, y and z is `size`, > 0. Returns the factor; 1 for a mesh without size.
+double ax_mesh_resize(ax_mesh* mesh, double size);
+
 // What refining has done.
 typedef struct ax_refinement {
     int rounds;          // each divides every face into four; 0: fine enough already

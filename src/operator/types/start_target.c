@@ -3,7 +3,7 @@
 typedef struct arguments {
     const char* file;
     int triangles, unit, up, border;
-    double edge, scale_lo, scale_hi, mouth_min, angle;
+    double edge, size, scale_lo, scale_hi, mouth_min, angle;
     bool project, refine;
 } arguments;
 
@@ -53,6 +53,8 @@ static const ax_field fields[] = {
                 "no load."),
     AX_FLAG(arguments, project, "Project",
             .doc = "If the surface is not dome-like everywhere, design for the nearest one that is."),
+    AX_NUMBER(arguments, size, "Size", "length", 0, 1e9, .open = true, .fallback = "as in the file",
+              .doc = "Scale the surface until the longest of its extents is this."),
 };
 
 // While the design is solved the form is that of the state at hand, for whoever looks when progress is reported.
@@ -95,6 +97,8 @@ static ax_status design_for(const arguments* a, const char* path, const ax_progr
     ax_mesh mesh;
     ax_status status = ax_mesh_read(path, &read, &mesh, NULL, error);
     if (status == AX_OK) {
+        if (a->size > 0)
+            ax_mesh_resize(&mesh, a->size);
         if (a->refine)
             ax_design_refine_target(&mesh, &options);
         status = ax_design_from_target(&mesh, &options, progress, design, error);
