@@ -321,7 +321,8 @@ export class Stage {
         // in low views titles and buttons take much of the top, and the legend stands beside the sheet
         const { width, height } = view.rect;
         const low = height < 420;
-        const beside = view.state === "flat" && height < 560 && width > 400 ? (low ? 220 : 270) : 0;
+        const legend = low ? 220 : 270;
+        const beside = view.state === "flat" && height < 560 && width - legend > 0.8 * height ? legend : 0;
         const pose = view.orbit.framed(scene.panels.places, { azimuth, elevation, projection }, width - beside, height, share, low ? -0.05 : view.state === "flat" ? 0.04 : 0.05);
         const across = (pose.distance * Math.tan(Math.PI / 12) * beside) / height;
         const right = azimuth * (Math.PI / 180);

@@ -46,7 +46,7 @@ function FieldRow({ field, value, sized, onChange }: { field: FieldSchema; value
             const words = field.choices.join("").length;
             return (
                 <Row label={field.title} title={field.doc}>
-                    {(id) => field.choices.length <= 4 && words <= 22
+                    {(id) => field.choices.length <= 4 && words <= 18
                         ? <Segments fill name={field.title} value={String(value ?? field.choices[0])} options={options} onChange={onChange} />
                         : <Choice id={id} value={String(value ?? field.choices[0])} options={options} onChange={onChange} />}
                 </Row>

@@ -4,7 +4,7 @@ import type { Step } from "../protocol/types";
 import { command, currentShell, documentState, operatorNamed, operators, readOnly } from "../state/session";
 import { callOf, missing, type Arguments } from "../tools/calls";
 import { Button, Choice, Section, Tool } from "./controls";
-import { count } from "./format";
+import { count, plural } from "./format";
 import { Icon, operatorIcon } from "./icons";
 import { OperatorForm } from "./operatorform";
 import { OperatorPanel } from "./toolpanel";
@@ -39,7 +39,8 @@ export function Recipe() {
 function StepRow({ step, index, at, editing, onEdit }: { step: Step; index: number; at: number; editing: boolean; onEdit(): void }) {
     const schema = operatorNamed(step.operator.op);
     const current = index === at - 1;
-    const [title, line] = split(step.words, schema?.title ?? step.operator.op);
+    const [title, all] = split(step.words, schema?.title ?? step.operator.op);
+    const line = short(all, step.operator.hinges);
     const words = index === 0 && !line ? `${count(currentShell()?.linkage.panels ?? 0)} panels` : line;
     return (
         <li class={`step-line${step.state === "ahead" ? " ahead" : ""}`}>
@@ -63,6 +64,14 @@ function StepRow({ step, index, at, editing, onEdit }: { step: Step; index: numb
 function split(words: string, title: string): [string, string] {
     const at = words.indexOf(": ");
     return at > 0 ? [words.slice(0, at), words.slice(at + 2)] : [words || title, ""];
+}
+
+/** Lists of numbers say no more than how many there are. */
+function short(line: string, hinges: unknown): string {
+    const listed = typeof hinges === "string" && /^\d+(,\d+)+$/.test(hinges) ? hinges : null;
+    const from = listed ? line.indexOf(listed.slice(0, 12)) : -1;
+    const named = from < 0 ? line : `${line.slice(0, from)}${plural(listed!.split(",").length, "hinge")}${/, [^\d].*$/.exec(line.slice(from))?.[0] ?? ""}`;
+    return named.replace(/points (\d+ points)/, "$1");
 }
 
 function EditStep({ step, index, onDone }: { step: Step; index: number; onDone(): void }) {
