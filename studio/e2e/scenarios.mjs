@@ -259,7 +259,7 @@ export const scenarios = {
             await hand.key("c");
             const drawn = () => page.evaluate(async () => {
                 await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
-                return auxshell.stage.value.overlay.toDataURL();
+                return auxshell.stage.value.canvases.overlay.toDataURL();
             });
             const circled = await drawn();
             await page.getByLabel("Rim", { exact: true }).selectOption("rim_free");
