@@ -71,7 +71,7 @@ function short(line: string, hinges: unknown): string {
     const listed = typeof hinges === "string" && /^\d+(,\d+)+$/.test(hinges) ? hinges : null;
     const from = listed ? line.indexOf(listed.slice(0, 12)) : -1;
     const named = from < 0 ? line : `${line.slice(0, from)}${plural(listed!.split(",").length, "hinge")}${/, [^\d].*$/.exec(line.slice(from))?.[0] ?? ""}`;
-    return named.replace(/points (\d+ points)/, "$1");
+    return named.replace(/points (\d+ points?)\b/, "$1");
 }
 
 function EditStep({ step, index, onDone }: { step: Step; index: number; onDone(): void }) {

@@ -138,8 +138,9 @@ function ViewTitle({ id, short }: { id: ViewId; short: boolean }) {
     if (!shell || !shell.deployed.length) return <b>{titles[id]}</b>;
     const unit = (documentState.value?.unit ?? "m") as LengthUnit;
     const flat = id === "flat";
-    const b = boundsOf(flat ? shell.flat : shell.simulated ?? shell.deployed);
-    const name = flat ? "Flat" : id !== "deployed" ? titles[id] : motion.value.shown !== null ? "On the way" : mode.value === "analyse" && shell.simulated ? "Simulated" : "Deployed";
+    const { shown, frames } = motion.value;
+    const b = boundsOf(flat ? shell.flat : (shown !== null && frames[shown]) || (shell.simulated ?? shell.deployed));
+    const name = flat ? "Flat" : id !== "deployed" ? titles[id] : shown !== null ? "On the way" : mode.value === "analyse" && shell.simulated ? "Simulated" : "Deployed";
     return (
         <>
             <b>{name}</b>
