@@ -1078,6 +1078,42 @@ static void what_an_operator_misses_is_told(void** state)
     ax_form_free(form);
 }
 
+static void drawn_sheets_have_their_proportions(void** state)
+{
+    (void)state;
+    static const struct {
+        double width, height;
+        int triangles;
+    } cases[] = {{3, 1, 600}, {3, 1, 1200}, {2, 1.4, 600}, {6, 5, 640}, {4, 1, 800}, {10, 7, 600}, {1.5, 2, 1000}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        char start[200];
+        snprintf(start, sizeof start, "{\"op\": \"start_rectangle\", \"width\": %g, \"height\": %g, \"triangles\": %d}",
+                 cases[k].width, cases[k].height, cases[k].triangles);
+        ax_form* form = play(start);
+        ax_form_view v = ax_form_look(form);
+        int t = v.linkage->triangle_count;
+        double square[2] = {0, 0}, sides[2], wanted[2] = {cases[k].width, cases[k].height};
+        for (int p = 0; p < t; ++p)
+            for (int c = 0; c < 2; ++c) {
+                const int* h = v.linkage->triangles[p];
+                double x = (v.sheet[h[0]][c] + v.sheet[h[1]][c] + v.sheet[h[2]][c]) / 3;
+                square[c] += (x * x + v.spacing * v.spacing / 24) / t; // a panel's own and its holes'
+            }
+        for (int c = 0; c < 2; ++c) {
+            sides[c] = sqrt(12 * square[c]); // of the rectangle with these moments
+            assert_near(sides[c], wanted[c], 0.025 * wanted[c]);
+        }
+        assert_near(t * sqrt(3) / 4 * v.spacing * v.spacing, wanted[0] * wanted[1], 1e-9 * wanted[0] * wanted[1]);
+        assert_near(t, cases[k].triangles, 0.25 * cases[k].triangles);
+        ax_error error = {0};
+        int *hinges, count;
+        assert_int_equal(ax_select(form, "rim:side4", &hinges, &count, &error), AX_OK); // corners are there
+        ax_free(hinges);
+        assert_int_equal(ax_select(form, "rim:side5", &hinges, &count, &error), AX_BAD_INPUT);
+        ax_form_free(form);
+    }
+}
+
 // ---- resolution --------------------------------------------------------------------------------------------------------------
 
 // The place of a point of the sheet in a state: a linear fit to the hinges about it.
@@ -1203,6 +1239,7 @@ int main(void)
         cmocka_unit_test(a_cancelled_operator_leaves_the_form_as_it_was),
         cmocka_unit_test(playing_stops_where_it_is_told),
         cmocka_unit_test(what_an_operator_misses_is_told),
+        cmocka_unit_test(drawn_sheets_have_their_proportions),
         cmocka_unit_test(results_do_not_depend_on_resolution),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAST_TRIANGLES = 12, MOST_TRIANGLES = 2000000 };
 static const double standard_mouth = 2 * AX_PI / 180, standard_give = 3;
 
 const char* ax_held_kind_name(ax_held_kind kind)
@@ -296,73 +295,13 @@ void ax_form_free(ax_form* f)
     ax_free(f);
 }
 
-static double outline_area(const ax_form_start* start)
-{
-    double area = 0;
-    for (int k = 0; k < start->outline_count; ++k)
-        area += 0.5 * ax_cross2(start->outline[k], start->outline[(k + 1) % start->outline_count]);
-    return area;
-}
-
-// The border follows an outline by whole panels, and their number decides whether the rim stands within it or without: a dome's rise
-// told 600 panels from 2,500 by it. The sheet as a whole is scaled to the area of its outline.
-static void fit_area(ax_lattice* lattice, double area)
-{
-    const ax_linkage* linkage = &lattice->linkage;
-    double cell =
-        sqrt(3) / 4 * lattice->spacing * lattice->spacing; // what a panel takes up, with its share of the holes
-    double scale = sqrt(area / (linkage->triangle_count * cell));
-    for (int h = 0; h < linkage->hinge_count; ++h)
-        for (int c = 0; c < 2; ++c)
-            lattice->hinges[h][c] = lattice->offset[c] + scale * (lattice->hinges[h][c] - lattice->offset[c]);
-    lattice->spacing *= scale;
-}
-
 ax_status ax_form_make(const ax_form_start* start, ax_form** out, ax_error* error)
 {
     *out = NULL;
-    if (start->outline_count < 3)
-        return ax_fail(error, AX_USAGE, "An outline needs at least 3 points, %d are given.", start->outline_count);
-    double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
-    for (int k = 0; k < start->outline_count; ++k)
-        for (int c = 0; c < 2; ++c) {
-            if (!isfinite(start->outline[k][c]))
-                return ax_fail(error, AX_USAGE, "Point %d of the outline is no number.", k);
-            lo[c] = fmin(lo[c], start->outline[k][c]), hi[c] = fmax(hi[c], start->outline[k][c]);
-        }
-    double area = outline_area(start);
-    if (!(fabs(area) > 1e-12 * (hi[0] - lo[0]) * (hi[1] - lo[1])))
-        return ax_fail(error, AX_USAGE, "The outline encloses no area.");
-    if (!(start->scale >= 1 && start->scale <= 2))
-        return ax_fail(error, AX_USAGE, "The scale factor %g is outside 1 to 2.", start->scale);
-    double spacing = start->edge > 0 ? 2 * start->edge : sqrt(4 * fabs(area) / (sqrt(3) * fmax(start->triangles, 1)));
-    double expected = 4 * fabs(area) / (sqrt(3) * spacing * spacing);
-    if (!(expected >= 0.5 * LEAST_TRIANGLES && expected <= MOST_TRIANGLES))
-        return ax_fail(error, AX_USAGE, "This outline would hold about %.0f triangles; %d to %d can be handled.",
-                       expected, LEAST_TRIANGLES, MOST_TRIANGLES);
-
-    // counter-clockwise; a lattice point in the middle, so that symmetric outlines get symmetric linkages
-    int n = start->outline_count;
-    double(*points)[2] = ax_alloc((size_t)n, sizeof *points);
-    for (int k = 0; k < n; ++k)
-        memcpy(points[k], start->outline[area > 0 ? k : n - 1 - k], sizeof *points);
-    double middle[2] = {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1])};
-    ax_outline outline = {n, (const double(*)[2])points};
     ax_lattice lattice;
-    ax_status status = AX_OK;
-    for (int round = 0;; ++round) {
-        status = ax_lattice_lay(&outline, spacing, start->angle, middle, start->inside, &lattice, error);
-        double share = status == AX_OK ? lattice.linkage.triangle_count / fmax(start->triangles, 1) : 1;
-        if (status != AX_OK || start->edge > 0 || round == 6 || fabs(share - 1) < 0.02)
-            break;
-        ax_lattice_free(&lattice);
-        spacing *= sqrt(share);
-    }
-    ax_free(points);
+    ax_status status = ax_form_lay(start, &lattice, error);
     if (status != AX_OK)
         return status;
-    if (!(start->edge > 0) && !start->inside)
-        fit_area(&lattice, fabs(area));
     ax_form* f = ax_form_over(&lattice, start->unit);
     for (int t = 0; t < f->lattice.linkage.triangle_count; ++t) {
         f->prescribed[t] = start->scale;
@@ -422,7 +361,7 @@ ax_status ax_form_from_design(const ax_design* design, ax_form** out, ax_error* 
 {
     *out = NULL;
     const ax_linkage* from = &design->linkage;
-    if (from->triangle_count < LEAST_TRIANGLES)
+    if (from->triangle_count < AX_FORM_LEAST)
         return ax_fail(error, AX_USAGE, "A design of %d triangles is too small.", from->triangle_count);
     ax_lattice lattice = {.linkage = ax_linkage_copy(from),
                           .hinges = ax_calloc((size_t)from->hinge_count, sizeof *lattice.hinges)};

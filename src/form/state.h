@@ -103,6 +103,11 @@ static inline double ax_form_side(const ax_form* f, int triangle)
     return 0.5 * f->prescribed[triangle] * f->lattice.spacing;
 }
 
+enum { AX_FORM_LEAST = 12, AX_FORM_MOST = 2000000 }; // panels
+
+// The sheet: a lattice over the outline, of its area and as near as whole panels come to its proportions.
+ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error* error);
+
 // Everything but the linkage, allocated for it and derived from it; states at the sheet.
 ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit);
 

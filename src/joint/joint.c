@@ -33,6 +33,8 @@ enum { UNKNOWNS = 5, STEPS = 40, ANCHORED_STEPS = 4 };
 static const double weight_inner = 10, weight_border = 3, weight_released = 0.02, weight_surface = 3, weight_curve = 10,
                     weight_fixed = 1000, weight_plane = 10, weight_fair = 0.05, weight_stay = 0.003, weight_mouth = 10,
                     mouth_margin = 1.05, mouth_share = 0.7, mouth_comfort = 15 * AX_PI / 180, apart_margin = 0.02;
+static const double on_place =
+    1e-7; // edges: a short step leaves hinges further off where their place has just changed facets
 
 typedef double state[UNKNOWNS]; // p0, p1, q0, q1, q2 of one hinge
 
@@ -687,7 +689,7 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
             break;
         }
         off_place = find_places(&s);
-        if (congruence < 1e-12 && (longest < s.fine || k > 3 * ANCHORED_STEPS))
+        if (congruence < 1e-12 && ((longest < s.fine && off_place < on_place) || k > 3 * ANCHORED_STEPS))
             break;
         refresh_active(&s);
         assemble(&s, mu);

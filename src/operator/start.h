@@ -23,7 +23,8 @@ extern const char* const ax_unit_words[3];
      .lo = 12,                                                                                                         \
      .hi = 2000000,                                                                                                    \
      .offset = offsetof(T, start.triangles),                                                                           \
-     .doc = "Wanted number of panels, unless their edge is given."},                                                   \
+     .doc =                                                                                                            \
+         "Wanted number of panels, unless their edge is given; whole rows may take up to a quarter more or fewer."},   \
         {.name = "edge",                                                                                               \
          .title = "Panel edge",                                                                                        \
          .unit = "length",                                                                                             \
