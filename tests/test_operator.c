@@ -654,6 +654,58 @@ static void designs_start_from_outlines_and_surfaces(void** state)
     }
 }
 
+// Who looks at the form when progress is reported.
+typedef struct viewer {
+    ax_form** form;
+    int seen, most;     // states; it cancels at so many
+    double first, last; // largest relative difference of an edge, flat against deployed
+} viewer;
+
+static bool watch(void* context, const char* stage, double fraction, double residual)
+{
+    (void)stage, (void)fraction, (void)residual;
+    viewer* w = context;
+    if (!*w->form)
+        return true;
+    ax_form_view v = ax_form_look(*w->form);
+    w->last = 0;
+    for (int t = 0; t < v.linkage->triangle_count; ++t)
+        for (int k = 0; k < 3; ++k) {
+            int a = v.linkage->triangles[t][k], b = v.linkage->triangles[t][(k + 1) % 3];
+            w->last = fmax(w->last,
+                           fabs(ax_distance3(v.deployed[a], v.deployed[b]) / ax_distance2(v.flat[a], v.flat[b]) - 1));
+        }
+    w->first = w->seen++ ? w->first : w->last;
+    return w->seen < w->most;
+}
+
+static void a_design_for_a_surface_is_watched_while_it_is_solved(void** state)
+{
+    (void)state;
+    for (int most = 1000; most >= 2; most -= 998) {
+        ax_recipe* recipe = ax_recipe_make();
+        assert_int_equal(ax_recipe_insert(recipe, 0,
+                                          "{\"op\": \"start_target\", \"file\": \"surfaces/spherical_cap.obj\", "
+                                          "\"triangles\": 200}",
+                                          NULL),
+                         AX_OK);
+        ax_form* form = NULL;
+        viewer w = {.form = &form, .most = most};
+        const ax_progress progress = {.report = watch, .context = &w};
+        ax_status status = ax_recipe_apply(recipe, 0, AX_SOURCE_DIR "/examples", &progress, &form, NULL);
+        if (most > 2) {
+            assert_int_equal(status, AX_OK);
+            assert_true(w.seen >= 4);
+            assert_true(w.first > 1e-3 && w.last < 1e-6);
+        } else { // nothing is left of what was seen
+            assert_int_equal(status, AX_CANCELLED);
+            assert_null(form);
+        }
+        ax_form_free(form);
+        ax_recipe_free(recipe);
+    }
+}
+
 // ---- selections --------------------------------------------------------------------------------------------------------------
 
 static int count_of(ax_form* form, const char* words)
@@ -1227,6 +1279,7 @@ int main(void)
         cmocka_unit_test(scale_factors_come_from_an_image),
         cmocka_unit_test(a_design_starts_from_a_drawn_curve),
         cmocka_unit_test(designs_start_from_outlines_and_surfaces),
+        cmocka_unit_test(a_design_for_a_surface_is_watched_while_it_is_solved),
         cmocka_unit_test(selections_choose_what_they_say),
         cmocka_unit_test(lines_run_straight_and_curves_lead_from_hinge_to_hinge),
         cmocka_unit_test(selections_that_cannot_be_read_are_refused),
