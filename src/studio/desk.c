@@ -308,15 +308,21 @@ static const char* solver_word(const desk* d)
     return d->busy ? "working" : d->previewing ? "preview" : d->moving ? "playing" : "idle";
 }
 
-// While things move: places always, the rest seldom, the report seldomer still.
-static double publish_moving(desk* d)
+static bool measures_due(const desk* d)
 {
-    return publish(d, ax_seconds() - d->measured > fmax(rest_seconds, 10 * d->measure_time));
+    return ax_seconds() - d->measured > fmax(rest_seconds, 10 * d->measure_time);
 }
 
-static double show_moving(desk* d)
+// While things move: places always, the rest seldom, the report seldomer still. A hand that waits does not wait for the rest, unless
+// that would never come.
+static double publish_moving(desk* d, bool waited_for)
 {
-    double now = ax_seconds(), move = publish_moving(d);
+    return publish(d, measures_due(d) && (!waited_for || ax_seconds() - d->measured > report_seconds));
+}
+
+static double show_moving(desk* d, bool waited_for)
+{
+    double now = ax_seconds(), move = publish_moving(d, waited_for);
     bool at_hand = d->report_time > quick_report && now - d->hand_moved < report_seconds;
     if (!at_hand && now - d->reported > fmax(report_seconds, 10 * d->report_time)) {
         measure(d);
@@ -364,7 +370,7 @@ static bool report_progress(void* context, const char* stage, double fraction, d
     desk* d = context;
     double now = ax_seconds();
     if (desk_form(d) && !d->live_shown && now - d->published >= frame_seconds) {
-        publish_moving(d);
+        publish_moving(d, false);
         d->rested = false;                          // it was shown as moving
         if (!d->opened && d->opener && !d->watched) // once: who looks at something else meanwhile is left alone
             hub_show_making(d->hub, d->opener, d);
@@ -514,7 +520,7 @@ static void advance(desk* d, double seconds, bool first)
     d->update_time = ax_seconds() - start;
     if (left)
         return;
-    double move = show_moving(d);
+    double move = show_moving(d, first);
     d->still = move < rest_move ? d->still + 1 : 0;
     if (d->still >= REST_UPDATES) {
         d->moving = false;
@@ -621,7 +627,7 @@ void desk_step(desk* d, int iterations)
     use_live(d);
     for (int done = 0; done < iterations && !gives_up(d); done += ITERATIONS) {
         ax_form_iterate(d->live, iterations - done < ITERATIONS ? iterations - done : ITERATIONS);
-        show_moving(d);
+        show_moving(d, false);
     }
     d->rested = false;
 }

@@ -43,11 +43,12 @@ function mix(a: number, b: number, s: number): number {
     return two | ((((a >>> 8) & 0xff) * (256 - k) + ((b >>> 8) & 0xff) * k) & 0xff00);
 }
 
-let screen = new Float32Array(0);
+let room = new Float32Array(0);
 
 /** Places (3 per hinge) in the picture: x and y in pixels, and depth; a depth that is none where a place is behind the eye. */
-function project(places: Float32Array, { x, y, width, height, matrix: m }: Window): void {
-    if (screen.length < places.length) screen = new Float32Array(places.length);
+function project(places: Float32Array, { x, y, width, height, matrix }: Window): Float32Array {
+    if (room.length < places.length) room = new Float32Array(places.length);
+    const screen = room, m = Float64Array.from(matrix);
     for (let i = 0; i < places.length; i += 3) {
         const px = places[i], py = places[i + 1], pz = places[i + 2];
         const w = m[3] * px + m[7] * py + m[11] * pz + m[15];
@@ -56,6 +57,7 @@ function project(places: Float32Array, { x, y, width, height, matrix: m }: Windo
         screen[i + 1] = y + 0.5 * height * (1 - (m[1] * px + m[5] * py + m[9] * pz + m[13]) * s);
         screen[i + 2] = (m[2] * px + m[6] * py + m[10] * pz + m[14]) * s;
     }
+    return screen;
 }
 
 const inverse = (x: number, y: number) => 1 / Math.sqrt(x * x + y * y);
@@ -69,10 +71,11 @@ const [lineFrom, lineTo] = [0.4, 1.2];
  */
 export function drawPanels(picture: Picture, window: Window, places: Float32Array, triangles: Uint32Array,
     colour: (panel: number, front: boolean) => number, marks: Uint8Array, inks: Inks): void {
-    const { pixels, depth } = picture;
+    const { pixels, depth, width } = picture;
+    const { line: lineInk, lineAlpha, accent, hatch } = inks;
     const left = Math.max(0, window.x), top = Math.max(0, window.y);
     const right = Math.min(picture.width, window.x + window.width), bottom = Math.min(picture.height, window.y + window.height);
-    project(places, window);
+    const screen = project(places, window);
     for (let t = 0; t < marks.length; t++) {
         const a = 3 * triangles[3 * t];
         let b = 3 * triangles[3 * t + 1], c = 3 * triangles[3 * t + 2];
@@ -95,23 +98,27 @@ export function drawPanels(picture: Picture, window: Window, places: Float32Arra
         const bz = screen[b + 2] - az, cz = screen[c + 2] - az;
         const zx = (bz * (cy - ay) - cz * (by - ay)) / area, zy = (cz * (bx - ax) - bz * (cx - ax)) / area;
         const selected = marks[t] === 128, hatched = marks[t] === 192;
-        const face = selected ? mix(colour(t, front), inks.accent, 0.12) : colour(t, front);
-        const line = selected ? inks.accent : mix(face, inks.line, inks.lineAlpha);
+        const face = selected ? mix(colour(t, front), accent, 0.12) : colour(t, front);
+        const line = selected ? accent : mix(face, lineInk, lineAlpha);
+        const ia = -1 / ua, ib = -1 / ub, ic = -1 / uc;
         for (let y = y0; y < y1; y++) {
             const v = y + 0.5;
             const da = va * v + wa + 0.5 * ua, db = vb * v + wb + 0.5 * ub, dc = vc * v + wc + 0.5 * uc;
             const z = az + zx * (0.5 - ax) + zy * (v - ay);
             // where all three are above -1/2
-            const [pa, pb, pc] = [-(da + 0.5) / ua, -(db + 0.5) / ub, -(dc + 0.5) / uc];
-            const from = Math.max(x0, Math.ceil(Math.max(ua > 0 ? pa : x0, ub > 0 ? pb : x0, uc > 0 ? pc : x0)));
-            const to = Math.min(x1 - 1, Math.floor(Math.min(ua < 0 ? pa : x1, ub < 0 ? pb : x1, uc < 0 ? pc : x1)));
-            for (let x = from, i = y * picture.width + from; x <= to; x++, i++) {
+            let low = x0, high = x1 - 1;
+            const pa = (da + 0.5) * ia, pb = (db + 0.5) * ib, pc = (dc + 0.5) * ic;
+            if (ua > 0) { if (pa > low) low = pa; } else if (ua < 0 && pa < high) high = pa;
+            if (ub > 0) { if (pb > low) low = pb; } else if (ub < 0 && pb < high) high = pb;
+            if (uc > 0) { if (pc > low) low = pc; } else if (uc < 0 && pc < high) high = pc;
+            const from = Math.ceil(low), to = Math.floor(high);
+            for (let x = from, i = y * width + from; x <= to; x++, i++) {
                 const d1 = ua * x + da, d2 = ub * x + db, d3 = uc * x + dc;
                 const d = d1 < d2 ? (d1 < d3 ? d1 : d3) : d2 < d3 ? d2 : d3;
                 if (d <= -0.5) continue; // beside an edge along the row
                 const near = z + zx * x;
                 if (near >= depth[i]) continue;
-                const ground = hatched && ((x + y) & 7) > 4 ? inks.hatch : face;
+                const ground = hatched && ((x + y) & 7) > 4 ? hatch : face;
                 const ink = d >= lineTo ? ground : d <= lineFrom ? line : mix(ground, line, (lineTo - d) / (lineTo - lineFrom));
                 if (d >= 0.5) {
                     pixels[i] = ink | 0xff000000;

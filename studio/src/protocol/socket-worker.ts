@@ -5,7 +5,7 @@
 // the last ones and some time has passed. `undefined` tells the page from where on; false ends it.
 import { type Frame, decodeFrame, encodeFrame, isState, mergeFrames, section } from "./frames";
 
-const every = 50; // ms
+const every = 80; // ms
 
 addEventListener("message", ({ data: address, ports: [port] }: MessageEvent<string>) => {
     const socket = new WebSocket(address);

@@ -55,7 +55,7 @@ export class Live {
 
     /** Has states drawn so, as they come. True when a picture of them is there. */
     show(shell: Shell, scene: LiveScene): boolean {
-        const key = JSON.stringify({ ...scene, marks: null });
+        const key = keyOf(scene);
         if (this.run && this.run.shell !== shell) this.stop();
         const { run } = this;
         if (!run) {
@@ -94,6 +94,12 @@ export class Live {
         this.stop();
         this.worker.terminate();
     }
+}
+
+/** What a scene is but for marks, and for matrices: those follow the bounds of what moves, by planes that cut nothing here; where a camera
+ *  moves, the stage draws itself. */
+function keyOf({ marks: _, sights, ...rest }: LiveScene): string {
+    return JSON.stringify([rest, sights.map(({ window: { matrix: _, ...window }, ...sight }) => [window, sight])]);
 }
 
 const sameBytes = (a: Uint8Array, b: Uint8Array) => a.length === b.length && a.every((v, k) => v === b[k]);
