@@ -54,7 +54,7 @@ async function traced(browser, action) {
     const events = [];
     session.on("Tracing.dataCollected", ({ value }) => events.push(...value));
     await session.send("Tracing.start", {
-        transferMode: "ReportEvents", traceConfig: { includedCategories: ["devtools.timeline", "viz", "gpu", "blink.user_timing"], excludedCategories: ["*"] },
+        transferMode: "ReportEvents", traceConfig: { includedCategories: ["devtools.timeline", "viz", "gpu", "blink.user_timing", "blink"], excludedCategories: ["*"] },
     });
     await action();
     const complete = new Promise((resolve) => session.once("Tracing.tracingComplete", resolve));
@@ -88,20 +88,18 @@ function complete(samples, events, origin) {
         else if (e.name === "AnimationFrame::Presentation" && frames.has(e.args.id)) frames.get(e.args.id).presented = at(e);
     }
     const software = events.filter((e) => e.ph === "X" && (e.name === "Display::DrawAndSwap" || e.name === "GPUTask")).map((e) => [at(e), at(e) + e.dur / 1000]);
-    // a worker's canvas hands its pictures to the browser by itself, from a surface of its own: one for each, and the next drawing takes it in
+    // a worker's canvas hands its pictures to the browser by itself, as a surface of its own; the next drawing takes it in
     const surface = (e) => Number(/FrameSinkId\(\d+, (\d+)\)/.exec(e.args.SurfaceId)?.[1]);
-    const handed = events.filter((e) => e.name === "Surface::CommitFrame" && surface(e) >= 2 ** 31).map(at).sort((a, b) => a - b);
-    const drawings = events.filter((e) => e.ph === "X" && e.name === "Display::DrawAndSwap").map((e) => [at(e), at(e) + e.dur / 1000]).sort((a, b) => a[0] - b[0]);
-    const pictures = new Map();
-    for (const submitted of [...new Set(samples.filter((s) => s.apart).map((s) => s.submitted))].sort((a, b) => a - b)) {
-        while (handed.length && handed[0] < submitted) handed.shift();
-        const taken = handed.shift();
-        pictures.set(submitted, drawings.find(([from]) => from >= taken)?.[1] ?? NaN);
-    }
+    const times = (of) => events.filter(of).map((e) => [at(e), at(e) + (e.dur ?? 0) / 1000]).sort((a, b) => a[0] - b[0]);
+    const pushed = times((e) => e.name === "OffscreenCanvas::PushFrame" && e.pid === mark.pid);
+    const handed = times((e) => e.name === "Surface::CommitFrame" && surface(e) >= 2 ** 31);
+    const drawings = times((e) => e.ph === "X" && e.name === "Display::DrawAndSwap");
+    const next = (list, after) => list.find(([from]) => from >= after) ?? [NaN, NaN];
+    const shown = (submitted) => next(drawings, next(handed, next(pushed, submitted)[0])[0])[1];
     for (const s of samples) {
         // a frame that changed nothing says so at once; the picture is then in the next one that was presented
         const frame = [...frames.values()].filter((f) => f.to >= s.submitted && f.presented >= s.submitted).sort((a, b) => a.from - b.from)[0];
-        s.presented = s.apart ? pictures.get(s.submitted) : (frame?.presented ?? NaN);
+        s.presented = s.apart ? shown(s.submitted) : (frame?.presented ?? NaN);
         s.software = covered([...software, [s.began, s.submitted]], s.began, s.presented);
     }
     return samples.filter((s) => Number.isFinite(s.presented));
@@ -135,7 +133,7 @@ async function measure(browser, panels) {
     }
 }
 
-const browser = await launch();
+const browser = await launch(new URL("./chromium.sh", import.meta.url).pathname);
 const sizes = process.argv.slice(2).map(Number);
 for (const panels of sizes.length ? sizes : [2000, 10000]) {
     const { samples, all, panels: count, renderer } = await measure(browser, panels);

@@ -8,9 +8,9 @@ import { chromium } from "playwright-core";
 const command = process.env.AUXSHELL;
 
 /** As on a computer without a graphics card: WebGL in software, and the page put together without it. */
-export function launch() {
+export function launch(executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium") {
     return chromium.launch({
-        executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+        executablePath,
         args: ["--use-angle=swiftshader-webgl", "--enable-unsafe-swiftshader", "--no-sandbox", "--disable-dev-shm-usage"],
     });
 }
