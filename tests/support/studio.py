@@ -159,7 +159,7 @@ class Page(Socket):
 
     def rest(self, seconds=60):
         """Until the state is at rest and its report is in."""
-        self.until(lambda: self.frames and not self.last.flags & MOVING and "report" in self.events
+        self.until(lambda: self.frames and not self.last.flags & MOVING and {"report", "document"} <= self.events.keys()
                    and self.last.revision >= self.events["report"]["revision"] and self.events.get("status", {}).get("solver") == "idle", seconds)
 
 
