@@ -528,6 +528,32 @@ static void unusable_requests_are_refused(void** state)
     ax_form_free(form);
 }
 
+// Settled under load is at rest: more of it, from there, does not move the form, with room for it and without.
+static void a_loaded_form_rests(void** state)
+{
+    (void)state;
+    for (int slack = 0; slack < 2; ++slack) {
+        ax_form* form = disk(600, 1.25);
+        paint(form, sphere);
+        slide_on_circle(form, slack ? 1.05 : 1.3);
+        set_dynamics(form, AX_DYNAMICS_INFLATION, 3);
+        settle(form);
+        ax_form_view view = ax_form_look(form);
+        int n = view.linkage->hinge_count;
+        double(*before)[3] = ax_copy(view.simulated, (size_t)n, sizeof *before), most = 0, edge = 0;
+        for (int t = 0; t < view.linkage->triangle_count; ++t)
+            edge += view.prescribed[t] * view.spacing / 2 / view.linkage->triangle_count;
+        ax_error error;
+        assert_int_equal(ax_form_settle(form, 3000, NULL, &error), AX_OK); // projective steps alone
+        view = ax_form_look(form);
+        for (int h = 0; h < n; ++h)
+            most = fmax(most, ax_distance3(before[h], view.simulated[h]));
+        assert_at_most(most, 0.01 * edge);
+        ax_free(before);
+        ax_form_free(form);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -537,6 +563,7 @@ int main(void)
         cmocka_unit_test(stored_forms_go_on_with_the_same_bits),
         cmocka_unit_test(a_cancelled_settle_changes_nothing),
         cmocka_unit_test(a_loaded_form_deploys_in_time),
+        cmocka_unit_test(a_loaded_form_rests),
         cmocka_unit_test(constraints_hold),
         cmocka_unit_test(shapes_do_not_depend_on_resolution),
         cmocka_unit_test(scale_factors_are_judged_away_from_the_rim),

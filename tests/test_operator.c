@@ -73,6 +73,8 @@ enum changed { SCALE, FLAT, DEPLOYED, SIMULATED, RIM, HELD, SELECTIONS, UNDERLAY
 
 #define DOME CIRCLE ", {\"op\": \"paint\", \"points\": [[0, 0]], \"radius\": 0.9, \"value\": 1.7}"
 #define OPEN DOME ", {\"op\": \"expand\"}"
+#define UNEVEN                                                                                                         \
+    CIRCLE ", {\"op\": \"paint\", \"points\": [[0.3, 0.1]], \"radius\": 0.8, \"value\": 1.6}, {\"op\": \"expand\"}"
 #define HUNG DOME ", {\"op\": \"rim_circle\", \"radius\": 1.05}, {\"op\": \"gravity\"}"
 #define JUMP                                                                                                           \
     CIRCLE ", {\"op\": \"paint\", \"points\": [[0, 0]], \"radius\": 0.5, \"value\": 1.9, \"falloff\": \"flat\"}"
@@ -126,7 +128,7 @@ static const struct {
     {OPEN, "{\"op\": \"hold_surface\", \"hinges\": \"all\", \"file\": \"surfaces/hemisphere.obj\"}", DEPLOYED},
     {OPEN, "{\"op\": \"hold_fixed\", \"hinges\": \"rim/5\", \"at\": \"flat\"}", DEPLOYED},
     {OPEN, "{\"op\": \"hold_mirror\"}", DEPLOYED},
-    {OPEN, "{\"op\": \"hold_rotation\"}", DEPLOYED},
+    {UNEVEN, "{\"op\": \"hold_rotation\"}", DEPLOYED},
     {JUMP ", {\"op\": \"expand\", \"give\": 0}", "{\"op\": \"hold_fair\", \"weight\": 1}", DEPLOYED},
     {OPEN ", {\"op\": \"hold_plane\", \"hinges\": \"rim\"}", "{\"op\": \"release\", \"name\": \"plane-1\"}", HELD},
     {CIRCLE, "{\"op\": \"select\", \"name\": \"east\", \"hinges\": \"rim:-20..20\"}", SELECTIONS},

@@ -34,7 +34,7 @@ typedef struct ladder {
 // One Newton run from the present places and forces; true when the end is exact and stable. `cancelled` is set on request.
 static bool finish(ladder* l, int steps, const ax_progress* progress, bool* cancelled)
 {
-    ax_newton_result r = ax_newton_run(l->newton, l->x, l->force, steps, progress);
+    ax_newton_result r = ax_newton_run(l->newton, l->x, l->force, AX_NEWTON_EXACT, steps, progress);
     l->result->newton_steps += r.steps;
     l->result->factorisations += r.factorisations;
     l->result->residuals = r.residuals;

@@ -120,10 +120,23 @@ ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*f
     return m;
 }
 
+void ax_deploy_model_keep_fair(ax_deploy_model* m, int count, int points, const int* hinges, const double* coefficients,
+                               double stiffness)
+{
+    assert(points <= 4);
+    m->fair = ax_realloc(m->fair, (size_t)(m->fair_count + count), sizeof *m->fair);
+    for (int k = 0; k < count; ++k) {
+        ax_fair_row* row = m->fair + m->fair_count++;
+        *row = (ax_fair_row){.points = points, .stiffness = stiffness * m->unit};
+        memcpy(row->hinge, hinges + points * k, (size_t)points * sizeof *hinges);
+        memcpy(row->coefficient, coefficients, (size_t)points * sizeof *coefficients);
+    }
+}
+
 void ax_deploy_model_free(ax_deploy_model* m)
 {
-    void* blocks[] = {m->unknown,     m->hinge, m->slide,   m->hold,    m->edge,          m->length,
-                      m->edge_source, m->rest,  m->support, m->gravity, m->polygon_start, m->polygon};
+    void* blocks[] = {m->unknown, m->hinge,   m->slide,   m->hold,          m->edge,    m->length, m->edge_source,
+                      m->rest,    m->support, m->gravity, m->polygon_start, m->polygon, m->fair};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     *m = (ax_deploy_model){0};
@@ -256,7 +269,30 @@ static void polygon_sums(const ax_deploy_model* m, const double (*x)[3], const i
     }
 }
 
-double ax_deploy_energy(const ax_deploy_model* m, const double (*x)[3], double (*gradient)[3])
+static void row_sum(const ax_fair_row* row, const double (*x)[3], double out[3])
+{
+    for (int c = 0; c < 3; ++c) {
+        out[c] = 0;
+        for (int i = 0; i < row->points; ++i)
+            out[c] += row->coefficient[i] * x[row->hinge[i]][c];
+    }
+}
+
+static double fair_energy(const ax_deploy_model* m, const double (*x)[3], double (*gradient)[3])
+{
+    double energy = 0, sum[3];
+    for (int k = 0; k < m->fair_count; ++k) {
+        const ax_fair_row* row = m->fair + k;
+        row_sum(row, x, sum);
+        energy += row->stiffness * ax_dot3(sum, sum) / 2;
+        for (int i = 0; i < row->points && gradient; ++i)
+            for (int c = 0; c < 3; ++c)
+                gradient[row->hinge[i]][c] += row->stiffness * row->coefficient[i] * sum[c];
+    }
+    return energy;
+}
+
+static double load_energy(const ax_deploy_model* m, const double (*x)[3], double (*gradient)[3])
 {
     double energy = 0;
     if (!m->inflated) {
@@ -287,6 +323,12 @@ double ax_deploy_energy(const ax_deploy_model* m, const double (*x)[3], double (
         }
     }
     return energy;
+}
+
+double ax_deploy_energy(const ax_deploy_model* m, const double (*x)[3], double (*gradient)[3])
+{
+    double load = load_energy(m, x, gradient);
+    return load + fair_energy(m, x, gradient);
 }
 
 void ax_deploy_constraints(const ax_deploy_model* m, const double (*x)[3], double* c)
@@ -337,7 +379,7 @@ ax_deploy_hessian ax_deploy_hessian_make(const ax_deploy_model* m)
         h.polygon_block_start[p + 1] = h.polygon_block_start[p] + pairs;
     }
     int polygon_pairs = h.polygon_block_start[m->polygon_count];
-    most += polygon_pairs;
+    most += polygon_pairs + 6 * m->fair_count;
     h.polygon_block = AX_NEW(int, polygon_pairs);
     int(*pairs)[2] = ax_alloc((size_t)most, sizeof *pairs), *slot = AX_NEW(int, most);
     for (int e = 0; e < m->edge_count; ++e) {
@@ -358,9 +400,23 @@ ax_deploy_hessian ax_deploy_hessian_make(const ax_deploy_model* m)
                     pairs[count][0] = i, pairs[count][1] = j, slot[count++] = at;
             }
     }
+    int polygons = count;
+    h.fair_block = ax_alloc((size_t)m->fair_count, sizeof *h.fair_block);
+    for (int k = 0; k < m->fair_count; ++k) {
+        const ax_fair_row* row = m->fair + k;
+        for (int b = 1, at = 0; b < row->points; ++b)
+            for (int a = 0; a < b; ++a, ++at) {
+                int i = m->unknown[row->hinge[a]], j = m->unknown[row->hinge[b]];
+                h.fair_block[k][at] = -1;
+                if (i >= 0 && j >= 0)
+                    pairs[count][0] = i, pairs[count][1] = j, slot[count++] = 6 * k + at;
+            }
+    }
     h.blocks = ax_blocks_make(m->unknowns, 3, count, (const int(*)[2])pairs);
     for (int k = 0; k < count; ++k)
-        (k < edges ? h.edge_block : h.polygon_block)[slot[k]] = ax_blocks_find(&h.blocks, pairs[k][0], pairs[k][1]);
+        (k < edges      ? h.edge_block
+         : k < polygons ? h.polygon_block
+                        : *h.fair_block)[slot[k]] = ax_blocks_find(&h.blocks, pairs[k][0], pairs[k][1]);
     ax_free(pairs);
     ax_free(slot);
     return h;
@@ -372,6 +428,7 @@ void ax_deploy_hessian_free(ax_deploy_hessian* h)
     ax_free(h->edge_block);
     ax_free(h->polygon_block);
     ax_free(h->polygon_block_start);
+    ax_free(h->fair_block);
     ax_free(h->slide);
     *h = (ax_deploy_hessian){0};
 }
@@ -450,6 +507,23 @@ static void add_volume(ax_deploy_hessian* h, const ax_deploy_model* m, const dou
     }
 }
 
+static void add_fairness(ax_deploy_hessian* h, const ax_deploy_model* m, const ax_deploy_frame* frame)
+{
+    for (int k = 0; k < m->fair_count; ++k) {
+        const ax_fair_row* row = m->fair + k;
+        for (int b = 0, at = 0; b < row->points; ++b)
+            for (int a = 0; a <= b; ++a) {
+                int i = m->unknown[row->hinge[a]], j = m->unknown[row->hinge[b]],
+                    block = a < b ? h->fair_block[k][at++] : -1;
+                if (i < 0 || j < 0)
+                    continue;
+                double v = row->stiffness * row->coefficient[a] * row->coefficient[b];
+                double part[9] = {v, 0, 0, 0, v, 0, 0, 0, v};
+                add_block(h, frame, block, i > j ? i : j, i < j ? i : j, part);
+            }
+    }
+}
+
 void ax_deploy_hessian_fill(ax_deploy_hessian* h, const ax_deploy_model* m, const double (*x)[3],
                             const ax_deploy_frame* frame, const double* force, double shift, double mu)
 {
@@ -482,6 +556,7 @@ void ax_deploy_hessian_fill(ax_deploy_hessian* h, const ax_deploy_model* m, cons
     }
     if (m->inflated)
         add_volume(h, m, x, frame);
+    add_fairness(h, m, frame);
 }
 
 // Rotation that takes the flat places of the supports nearest to where they are held (Horn 1987, by power iteration on the

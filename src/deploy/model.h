@@ -18,6 +18,13 @@ typedef struct ax_hold {
     double normal[3];      // IN_PLANE, unit: the plane goes through the place given for the hinge
 } ax_hold;
 
+// A row of hinges that should lie evenly: energy stiffness / 2 |sum of coefficient x place|^2, a little of which decides where the
+// rigid linkage alone leaves it open how slack parts lie.
+typedef struct ax_fair_row {
+    int points, hinge[4];
+    double coefficient[4], stiffness;
+} ax_fair_row;
+
 typedef struct ax_deploy_model {
     int hinges, unknowns; // unknowns: hinges that are not fixed
     int* unknown;         // per hinge: index among those, -1 if fixed
@@ -36,7 +43,8 @@ typedef struct ax_deploy_model {
     double pressure;      // such that pressure times four times the panel area is 1 (zero under gravity)
     int polygon_count;    // panels, holes and openings, the closed surface that the pressure acts on
     int *polygon_start, *polygon;
-    double origin[3];                 // apex of the volume: an unsupported rim is closed by a membrane to this point
+    int fair_count;
+    ax_fair_row* fair;                // none at first
     double tension;                   // mean edge force to expect: load x edge / length of the rim
     double unit;                      // document length of one
     double centre[3], flat_centre[2]; // document places of the origins
@@ -49,6 +57,10 @@ typedef struct ax_deploy_model {
 ax_deploy_model ax_deploy_model_make(const ax_linkage* linkage, const double (*flat)[2], const double (*places)[3],
                                      const ax_hold* holds, const double direction[3], double* unit_load);
 void ax_deploy_model_free(ax_deploy_model* model);
+
+// Adds `count` rows to keep fair, hinges count x points. `stiffness` is in total loads over document lengths.
+void ax_deploy_model_keep_fair(ax_deploy_model* model, int count, int points, const int* hinges,
+                               const double* coefficients, double stiffness);
 
 // Is a hinge held at a known place at first, fixed or on a curve?
 static inline bool ax_deploy_placed(const ax_deploy_model* model, int h)
@@ -94,7 +106,8 @@ typedef struct ax_deploy_hessian {
     int* edge_block;    // per edge, -1 if one end is supported
     int* polygon_block; // per polygon, its pairs in order (first < second position), -1 if an end is supported
     int* polygon_block_start;
-    int* slide; // per unknown: its index among those that slide, -1 if it does not
+    int (*fair_block)[6]; // per fair row, its pairs in order (first < second position)
+    int* slide;           // per unknown: its index among those that slide, -1 if it does not
 } ax_deploy_hessian;
 ax_deploy_hessian ax_deploy_hessian_make(const ax_deploy_model* model);
 void ax_deploy_hessian_free(ax_deploy_hessian* hessian);

@@ -13,8 +13,7 @@
 
 #include <string.h>
 
-static const double exact = 1e-10, merit_penalty = 30, penalty_far = 1e4, penalty_near = 1e7, edge_cap = 0.1,
-                    edge_target = 0.3;
+static const double merit_penalty = 30, penalty_far = 1e4, penalty_near = 1e7, edge_cap = 0.1, edge_target = 0.3;
 enum { UZAWA = 12, CHORDS = 4, TRIES = 3, REJECTIONS = 30 };
 
 struct ax_newton {
@@ -182,7 +181,8 @@ static void chord(ax_newton* s, const double (*x)[3], double mu, double* force)
     ax_deploy_constraints(m, (const double(*)[3])s->y, s->trial_c);
 }
 
-ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int most_steps, const ax_progress* progress)
+ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, double enough, int most_steps,
+                               const ax_progress* progress)
 {
     const ax_deploy_model* m = s->model;
     const double(*at)[3] = (const double(*)[3])x;
@@ -202,8 +202,9 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, int 
         double edge = ax_deploy_edge_error(m, at);
         double residual = sqrt(dot(3 * n, gradient[0], gradient[0]));
         result.residuals = (ax_residuals){edge, residual};
-        result.exact = edge <= exact && residual <= exact;
-        if (result.exact || result.steps == most_steps)
+        result.reached = edge <= enough && residual <= enough;
+        result.exact = edge <= AX_NEWTON_EXACT && residual <= AX_NEWTON_EXACT;
+        if (result.reached || result.steps == most_steps)
             break;
         if (!ax_progress_report(progress, "Balancing forces", (double)result.steps / most_steps,
                                 fmax(edge, residual))) {

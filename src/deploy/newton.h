@@ -10,16 +10,19 @@ ax_newton* ax_newton_make(const ax_deploy_model* model, ax_pool* pool);
 void ax_newton_free(ax_newton* newton);
 
 typedef struct ax_newton_result {
-    bool exact;  // both residuals at most 1e-10
-    bool stable; // and the reduced Hessian is positive definite there
+    bool reached; // both residuals are small enough
+    bool exact;   // at most AX_NEWTON_EXACT
+    bool stable;  // and the reduced Hessian is positive definite there
     bool cancelled;
     int steps, factorisations;
     ax_residuals residuals;
     double energy;
 } ax_newton_result;
 
-// From places x (hinges x 3) and edge forces, both replaced by the last accepted iterate.
-ax_newton_result ax_newton_run(ax_newton* newton, double (*x)[3], double* force, int most_steps,
+// From places x (hinges x 3) and edge forces, both replaced by the last accepted iterate, until both residuals are at most `enough`;
+// AX_NEWTON_EXACT is as small as can be reached.
+#define AX_NEWTON_EXACT 1e-10
+ax_newton_result ax_newton_run(ax_newton* newton, double (*x)[3], double* force, double enough, int most_steps,
                                const ax_progress* progress);
 
 // Edge forces that balance the load best in the least-squares sense at x, for a start without multipliers.

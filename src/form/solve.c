@@ -17,8 +17,16 @@ static const double hole_weight = 0.1, fair_weight = 0.1, held_fair_weight = 0.0
                     hang_wide_weight = 0.005, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
                     proximal = 1e-5, load_strain = 0.1, multiplier_cap = 2;
 static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
-enum { RESIZE_EVERY = 25, STANDARD_ITERATIONS = 400, PATIENCE = 5, REST_CHECK = 25 };
-static const double rest_error = 1e-4, rest_step = 1e-5, good_error = 5e-3;
+enum {
+    RESIZE_EVERY = 25,
+    FRESH_ITERATIONS = 100,
+    FLAT_ITERATIONS = 400,
+    SHAPE_ITERATIONS = 650,
+    LOAD_ITERATIONS = 400,
+    MOST_ITERATIONS = 2000,
+    REST_CHECK = 25
+};
+static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 1e-3, good_error = 5e-3;
 
 void ax_form_drop_solvers(ax_form* f)
 {
@@ -77,15 +85,50 @@ static int add(ax_solver* s, const char* type, int each, int count, const int* h
 // there is too much of them. Third differences are a^3 of those of the surface, a the spacing, and 1 / a^2 in number: weights that
 // grow with a^-4, the square of the number of panels, mean the same at every size. `wide` is that of 600 panels, and grows with
 // the power `growth` of their number.
-static void add_fairness(ax_form* f, ax_solver* s, int first, double near, double bend, double wide, double growth)
+typedef struct fair_rows {
+    int points, count;
+    const int* hinges;
+    double weight;
+} fair_rows;
+
+enum { FAIR_KINDS = 3 };
+
+static void list_fairness(const ax_form* f, double near, double bend, double wide, double growth,
+                          fair_rows rows[FAIR_KINDS])
 {
-    wide *= pow(f->lattice.linkage.triangle_count / 600.0, growth);
-    const int groups[] = {add(s, "fairness", 4, f->line_count, (const int*)f->lines, first, near, NULL),
-                          add(s, "fairness", 3, f->bend_count, (const int*)f->bends, first, bend, NULL),
-                          add(s, "fairness", 4, wide > 0 ? f->wide_count : 0, (const int*)f->wide, first, wide, NULL)};
-    for (int k = 0; k < 3; ++k)
-        if (groups[k] >= 0)
-            ax_solver_set_soft(s, groups[k], true);
+    wide *= f->wide_share * pow(f->lattice.linkage.triangle_count / 600.0, growth);
+    rows[0] = (fair_rows){4, f->line_count, (const int*)f->lines, near};
+    rows[1] = (fair_rows){3, f->bend_count, (const int*)f->bends, bend};
+    rows[2] = (fair_rows){4, wide > 0 ? f->wide_count : 0, (const int*)f->wide, wide};
+}
+
+static void add_fairness(ax_solver* s, int first, const fair_rows rows[FAIR_KINDS])
+{
+    for (int k = 0; k < FAIR_KINDS; ++k) {
+        int group = add(s, "fairness", rows[k].points, rows[k].count, rows[k].hinges, first, rows[k].weight, NULL);
+        if (group >= 0)
+            ax_solver_set_soft(s, group, true);
+    }
+}
+
+// What is fair under load.
+static void list_hang_fairness(const ax_form* f, fair_rows rows[FAIR_KINDS])
+{
+    list_fairness(f, hang_fair_weight, hang_bend_weight, hang_wide_weight, 2, rows);
+}
+
+void ax_form_keep_fair(const ax_form* f, ax_deploy_model* model, double scale)
+{
+    const ax_constraint_type* type = type_of("fairness");
+    fair_rows rows[FAIR_KINDS];
+    list_hang_fairness(f, rows);
+    for (int k = 0; k < FAIR_KINDS; ++k) {
+        double coefficients[4];
+        for (int i = 0; i < rows[k].points; ++i)
+            coefficients[i] = type->coefficient(rows[k].points, i);
+        ax_deploy_model_keep_fair(model, rows[k].count, rows[k].points, rows[k].hinges, coefficients,
+                                  scale * rows[k].weight);
+    }
 }
 
 // Rim parts and constraints on the deployed hinges, which start at point `first`; under load only what supports.
@@ -253,10 +296,12 @@ static void build_shape(ax_form* f)
         g->holes = add(s, "cyclic_polygon", 6, f->hole_count, loops, n, hole_weight, NULL);
         ax_free(loops);
         ax_solver_set_soft(s, g->holes, true);
+        fair_rows rows[FAIR_KINDS];
         if (may_fold(f)) // a little less than the square: where there is far too much, 2,500 panels settle too
-            add_fairness(f, s, n, held_fair_weight, held_bend_weight, wide_weight, 1.5);
+            list_fairness(f, held_fair_weight, held_bend_weight, wide_weight, 1.5, rows);
         else
-            add_fairness(f, s, n, fair_weight, bend_weight, 0, 0);
+            list_fairness(f, fair_weight, bend_weight, 0, 0, rows);
+        add_fairness(s, n, rows);
         add_holders(f, s, n, false, g);
     } else
         g->panels = add(s, "flat_triangle", 3, t, (const int*)linkage->triangles, 0, 1, NULL);
@@ -282,10 +327,15 @@ static void set_load_value(ax_solver* s, int load, const ax_load_type* type, con
 
 // A load that strains the panels by `load_strain` of an edge over the whole sheet: the rigid limit does not depend on its size, the
 // number of iterations does.
+static double load_per_area(const ax_form* f)
+{
+    return load_strain / f->radius;
+}
+
 static void add_load(ax_form* f, ax_solver* s)
 {
     const ax_linkage* l = &f->lattice.linkage;
-    double unit = load_strain / f->radius;
+    double unit = load_per_area(f);
     bool weight = f->dynamics.kind == AX_DYNAMICS_GRAVITY;
     int loops = l->triangle_count + (weight ? 0 : l->hole_count + l->opening_count);
     int total = 3 * l->triangle_count + l->hole_start[l->hole_count] + l->opening_start[l->opening_count];
@@ -327,7 +377,9 @@ static void build_hang(ax_form* f)
     ax_form_groups* g = &f->hang_groups;
     *g = (ax_form_groups){-1, -1, -1, -1, NULL, NULL};
     g->panels = add(s, "rigid_triangle", 3, linkage->triangle_count, (const int*)linkage->triangles, 0, 1, NULL);
-    add_fairness(f, s, 0, hang_fair_weight, hang_bend_weight, hang_wide_weight, 2);
+    fair_rows rows[FAIR_KINDS];
+    list_hang_fairness(f, rows);
+    add_fairness(s, 0, rows);
     add_holders(f, s, 0, true, g);
     add_load(f, s);
     f->hang = s;
@@ -360,12 +412,10 @@ void ax_form_build(ax_form* f)
     build_shape(f);
     if (ax_form_hangs(f))
         build_hang(f);
-    // with no inertia a time step is a proximal term: nothing flies off that no row holds
-    ax_dynamics still = {.mass = proximal, .time_step = 1};
     ax_solver* solvers[] = {f->shape, f->hang};
     for (int k = 0; k < 2; ++k)
         if (solvers[k]) {
-            ax_solver_set_dynamics(solvers[k], &still);
+            ax_solver_set_proximal(solvers[k], proximal); // nothing flies off that no row holds
             ax_solver_use_multipliers(solvers[k], true);
             ax_solver_cap_multipliers(solvers[k], multiplier_cap * f->lattice.spacing);
         }
@@ -448,23 +498,22 @@ static void measure_sides(ax_form* f)
         }
 }
 
-// What the shape's panels and holes are to be.
-static void size_shape(ax_form* f)
+// What the shape's panels are to be.
+static void size_panels(ax_form* f)
+{
+    int t = f->lattice.linkage.triangle_count;
+    bool shares = ax_form_shares(f);
+    for (int k = 0; k < t; ++k)
+        for (int c = 0; c < (shares ? 1 : 3); ++c)
+            f->lanes[(shares ? 1 : 3) * k + c] = ax_form_side(f, k);
+    int first = shares ? lane_of("shared_panel", "side") : lane_of("flat_triangle", "lengths");
+    ax_solver_set_all(f->shape, f->shape_groups.panels, first, shares ? 1 : 3, f->lanes);
+}
+
+// A hole's sides are those of its panels, flat and deployed alike.
+static void size_holes(ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
-    int t = linkage->triangle_count;
-    if (!ax_form_shares(f)) {
-        for (int k = 0; k < t; ++k)
-            f->lanes[3 * k] = f->lanes[3 * k + 1] = f->lanes[3 * k + 2] = ax_form_side(f, k);
-        ax_solver_set_all(f->shape, f->shape_groups.panels, lane_of("flat_triangle", "lengths"), 3, f->lanes);
-        return;
-    }
-    for (int k = 0; k < t; ++k)
-        f->lanes[k] = ax_form_side(f, k);
-    ax_solver_set_all(f->shape, f->shape_groups.panels, lane_of("shared_panel", "side"), 1, f->lanes);
-    if (f->hole_count == 0)
-        return;
-    // a hole's sides are those of its panels, flat and deployed alike
     for (int k = 0; k < f->hole_count; ++k) {
         const int* h = linkage->hole_hinges + linkage->hole_start[f->holes[k]];
         for (int i = 0; i < 6; ++i) {
@@ -508,12 +557,13 @@ static void take_states(ax_form* f)
 static void iterate_shape(ax_form* f, int iterations)
 {
     put_states(f);
+    size_panels(f);
     ax_solver_prepare(f->shape);
     for (int k = 0; k < iterations; ++k) {
-        if (k % RESIZE_EVERY == 0)
-            size_shape(f);
+        if (k % RESIZE_EVERY == 0 && ax_form_shares(f) && f->hole_count)
+            size_holes(f);
         aim_centres(f);
-        ax_solver_step(f->shape, 1);
+        ax_solver_iterate(f->shape, 1);
         take_states(f);
     }
 }
@@ -548,7 +598,7 @@ static void iterate_hang(ax_form* f, int iterations)
     for (int k = 0; k < iterations; ++k) {
         if (k == iterations - 1)
             ax_solver_get_places(f->hang, f->scratch);
-        ax_solver_step(f->hang, 1);
+        ax_solver_iterate(f->hang, 1);
     }
     ax_solver_get_places(f->hang, f->simulated);
     for (int h = 0; h < n; ++h)
@@ -651,12 +701,11 @@ static void forget(snapshot* s)
     ax_free(s->multipliers);
 }
 
-// Iterates one of the two until it rests or `limit` is reached; with `patient` a few times as long while edges are still off.
-// False if cancelled.
-static bool run(ax_form* f, bool shape, int limit, bool patient, const ax_progress* progress, const char* stage,
-                double lo, double hi)
+// Iterates one of the two until its edges are right within `error` and it rests, or for `least` iterations, and on to `most` while edges
+// are off. False if cancelled.
+static bool run(ax_form* f, bool shape, int least, int most, double error, const ax_progress* progress,
+                const char* stage, double lo, double hi)
 {
-    int most = patient ? PATIENCE * limit : limit;
     for (int done = 0; done < most;) {
         int count = REST_CHECK < most - done ? REST_CHECK : most - done;
         f->scaled_step = 0;
@@ -670,15 +719,33 @@ static bool run(ax_form* f, bool shape, int limit, bool patient, const ax_progre
                            : ax_form_simulated_error(f);
         if (!ax_progress_report(progress, stage, lo + (hi - lo) * done / most, off))
             return false;
-        if ((off < rest_error && f->scaled_step < rest_step) || (done >= limit && off < good_error))
+        bool near = off < error && (error > rest_error || f->scaled_step < rest_step);
+        if (near || (done >= least && off < good_error))
             return true;
     }
     return true;
 }
 
+// For given iterations; 0: until forces are in balance. False if cancelled.
+static bool load_sheet(ax_form* f, int iterations, const ax_progress* progress)
+{
+    const char* stage = "Loading the sheet";
+    if (iterations > 0)
+        return run(f, false, iterations, iterations, rest_error, progress, stage, 0.5, 1);
+    if (!run(f, false, LOAD_ITERATIONS, LOAD_ITERATIONS, near_error, progress, stage, 0.5, 0.6))
+        return false;
+    ax_progress_part part;
+    bool balanced;
+    if (!ax_form_balance(f, load_per_area(f), ax_progress_within(&part, progress, 0.6, 0.8), &balanced))
+        return false;
+    return balanced || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, rest_error, progress, stage, 0.8, 1);
+}
+
 ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress, ax_error* error)
 {
-    int limit = iterations > 0 ? iterations : STANDARD_ITERATIONS;
+    int least = ax_form_shares(f) ? SHAPE_ITERATIONS : FLAT_ITERATIONS, most = MOST_ITERATIONS;
+    if (iterations > 0)
+        least = most = iterations;
     int n = f->lattice.linkage.hinge_count;
     ax_status held = ax_form_hangs(f) ? ax_form_check_support(f, error) : AX_OK;
     if (held != AX_OK)
@@ -699,20 +766,21 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
         ax_form_shares(f) && (ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0 || ax_form_left_over(f));
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
         ax_form_restart(f, 0.05), fresh = true;
+
     if (fresh) { // panels that give way before the holes are open settle for a flatter shape, and leave it slowly
         bool leans = ax_form_hangs(f) && ax_form_shares(f);
         allow_give(f, false);
         if (leans)
             lean(f, true);
-        iterate_shape(f, limit / 4);
+        iterate_shape(f, iterations > 0 ? iterations / 4 : FRESH_ITERATIONS);
         if (leans)
             lean(f, false);
         allow_give(f, true);
     }
-    bool going = run(f, true, limit, iterations <= 0, progress, "Shaping the sheet", 0, ax_form_hangs(f) ? 0.5 : 1);
+    bool going = run(f, true, least, most, rest_error, progress, "Shaping the sheet", 0, ax_form_hangs(f) ? 0.5 : 1);
     measure_sides(f);
     if (going && ax_form_hangs(f))
-        going = run(f, false, limit, iterations <= 0, progress, "Loading the sheet", 0.5, 1);
+        going = load_sheet(f, iterations, progress);
     if (!going)
         restore(f, &before);
     forget(&before);

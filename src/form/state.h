@@ -4,6 +4,7 @@
 #include "ax/form.h"
 #include "base/pool.h"
 #include "constraint/place.h"
+#include "deploy/model.h"
 #include "linkage/lattice.h"
 #include "mesh/closest.h"
 #include "solver/solver.h"
@@ -38,7 +39,8 @@ struct ax_form {
     int mouth_count, (*mouths)[3]; // hinge, next, previous: the smaller angle of every inner hinge
     int line_count, (*lines)[4];   // four hinges in a row on kagome lines
     int bend_count, (*bends)[3];   // three in a row
-    int wide_count, (*wide)[4];    // every second one of seven in a row
+    int wide_count, (*wide)[4];    // every second one of seven in a row, on some lines
+    double wide_share;             // rows that one of them stands for
     int hole_count, *holes;        // those with six hinges, by number
 
     // asked
@@ -131,6 +133,11 @@ ax_status ax_form_check_support(const ax_form* form, ax_error* error);
 // Solvers for what is asked now, if there are none.
 void ax_form_build(ax_form* form);
 void ax_form_drop_solvers(ax_form* form);
+// Adds to a model what the loaded state's rows of fairness weigh, times `scale`.
+void ax_form_keep_fair(const ax_form* form, ax_deploy_model* model, double scale);
+// The loaded state at rest under `load`, the solver's force per area, from where the projective steps have brought it. Not balanced, and nothing
+// is changed, if it did not get there or something holds the form that Newton does not know. False if cancelled.
+bool ax_form_balance(ax_form* form, double load, const ax_progress* progress, bool* balanced);
 // The flat state twisted analytically to the prescribed factors.
 void ax_form_twist(ax_form* form);
 // Multipliers of both solvers, counted in *count; owned by the caller. NULL if there are none.

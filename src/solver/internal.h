@@ -78,9 +78,9 @@ struct ax_solver {
     ax_anderson* anderson;   // NULL: plain iterations
     ax_anderson_part* parts; // room for the places and every group
     bool changed;            // something since the last iteration that the past does not know
-    double merit;            // the last energy, or with multipliers the square of the shortest step
+    double merit;            // the last energy, or where nothing descends the square of the shortest step
     ax_dynamics dynamics;
-    double load_factor, cap;
+    double load_factor, cap, proximal;
     bool dynamic, multipliers, multiplied; // multiplied: some multiplier may not be zero
     bool pattern_changed, values_changed, rows_changed, dead_changed;
     int active_group, active_load, active_class; // what the running tasks work on

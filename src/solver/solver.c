@@ -297,6 +297,13 @@ void ax_solver_set_dynamics(ax_solver* s, const ax_dynamics* dynamics)
     s->values_changed = s->values_changed || before != after;
 }
 
+void ax_solver_set_proximal(ax_solver* s, double stiffness)
+{
+    s->changed = true;
+    s->values_changed = s->values_changed || s->proximal != stiffness;
+    s->proximal = stiffness;
+}
+
 void ax_solver_use_multipliers(ax_solver* s, bool use)
 {
     s->changed = true;
@@ -374,7 +381,7 @@ double ax_solver_multiplier(const ax_solver* s, int k, int constraint)
 
 static double mass_term(const ax_solver* s)
 {
-    return s->dynamic ? s->dynamics.mass / (s->dynamics.time_step * s->dynamics.time_step) : 0;
+    return s->dynamic ? s->dynamics.mass / (s->dynamics.time_step * s->dynamics.time_step) : s->proximal;
 }
 
 // The matrix, with the rows and columns of held points (as given) those of the identity; what they had goes to `held_matrix`.
@@ -702,22 +709,50 @@ static void forget_past(ax_solver* s)
     s->merit = INFINITY;
 }
 
+// What is constant during iterations: dead loads, and held points where they pull on free ones.
+static void add_to_base(ax_solver* s)
+{
+    ax_sum_dead_loads(s);
+    for (int v = 0; s->dead && v < s->n; ++v)
+        for (int c = 0; c < 4; ++c)
+            s->base[v][c] += s->load_factor * s->dead[v][c];
+    const ax_sparse* m = &s->held_matrix;
+    for (int v = 0; v < s->n; ++v)
+        for (int k = m->start[v]; k < m->start[v + 1]; ++k) {
+            int i = s->position[v], j = s->position[m->row[k]], free = s->held[i] ? j : i, held = s->held[i] ? i : j;
+            for (int c = 0; c < 3; ++c)
+                s->base[free][c] -= m->value[k] * s->x[held][c];
+        }
+}
+
+// The base of one iteration that is drawn to the present places.
+static void draw_back(ax_solver* s)
+{
+    for (int v = 0; v < s->n; ++v) {
+        for (int c = 0; c < 3; ++c)
+            s->base[v][c] = s->proximal * s->x[v][c];
+        s->base[v][3] = 0;
+    }
+    add_to_base(s);
+}
+
 // A local/global iteration descends the energy, so a jump that does not lower it is taken back before the global step (Peng et al.
-// 2018). With multipliers nothing descends. There the step must shorten (Zhang et al. 2019), which is known one global step later, and
-// the next jump waits for a step shorter than all before: without that, accepted jumps and the steps that repair them went on in
-// turn, far from any solution.
+// 2018). With multipliers nothing descends, and a proximal term has another energy each time. There the step must
+// shorten (Zhang et al. 2019), which is known one global step later, and the next jump waits for a step shorter than all before: without that, accepted jumps and the steps that repair them went on in turn, far from any solution.
 static void iterate(ax_solver* s)
 {
     double start = ax_seconds();
-    bool hard = false, jumped = false;
+    bool descends = s->proximal == 0 || s->dynamic, jumped = false;
     if (s->anderson) {
         for (int k = 0; k < s->group_count; ++k)
-            hard = hard || is_hard(s, s->groups + k);
+            descends = descends && !is_hard(s, s->groups + k);
         if (s->changed)
             forget_past(s);
         jumped = ax_anderson_jump(s->anderson, s->pool);
-        s->tallying = !hard;
+        s->tallying = descends;
     }
+    if (s->proximal > 0 && !s->dynamic)
+        draw_back(s);
     ax_local_step(s);
     if (s->tallying) {
         double energy = energy_of_tallies(s);
@@ -738,16 +773,17 @@ static void iterate(ax_solver* s)
     ++s->counters.iterations;
     if (!s->anderson)
         return;
-    double step = hard ? ax_anderson_residual(s->anderson, s->pool) : 0;
-    if (jumped && hard && !(step <= s->merit)) {
+    double step = descends ? 0 : ax_anderson_residual(s->anderson, s->pool);
+    bool grows = !descends && !(step <= s->merit);
+    if (jumped && grows) {
         ax_anderson_revert(s->anderson, s->pool);
         ax_anderson_forget(s->anderson);
         ++s->counters.jumps_refused;
     } else {
         ax_anderson_take(s->anderson, s->pool);
-        if (hard && !(step <= s->merit))
+        if (grows)
             ax_anderson_forget(s->anderson);
-        else if (hard)
+        else if (!descends)
             s->merit = step;
     }
     s->counters.seconds_anderson += ax_seconds() - end;
@@ -758,22 +794,6 @@ void ax_solver_accelerate(ax_solver* s, int window)
     ax_anderson_free(s->anderson);
     s->anderson = window > 0 ? ax_anderson_make(window) : NULL;
     s->changed = true;
-}
-
-// Adds to the base what is constant during iterations: dead loads, and held points where they pull on free ones.
-static void add_to_base(ax_solver* s)
-{
-    ax_sum_dead_loads(s);
-    for (int v = 0; s->dead && v < s->n; ++v)
-        for (int c = 0; c < 4; ++c)
-            s->base[v][c] += s->load_factor * s->dead[v][c];
-    const ax_sparse* m = &s->held_matrix;
-    for (int v = 0; v < s->n; ++v)
-        for (int k = m->start[v]; k < m->start[v + 1]; ++k) {
-            int i = s->position[v], j = s->position[m->row[k]], free = s->held[i] ? j : i, held = s->held[i] ? i : j;
-            for (int c = 0; c < 3; ++c)
-                s->base[free][c] -= m->value[k] * s->x[held][c];
-        }
 }
 
 bool ax_solver_iterate(ax_solver* s, int iterations)

@@ -68,6 +68,10 @@ typedef struct ax_dynamics {
 } ax_dynamics;
 void ax_solver_set_dynamics(ax_solver* solver, const ax_dynamics* dynamics);
 
+// Every static iteration is drawn to the places before it with this stiffness > 0; 0, the standard: none. What it settles at is
+// the same, and nothing flies off that no row holds (Parikh and Boyd 2014, Proximal Algorithms, section 4.1).
+void ax_solver_set_proximal(ax_solver* solver, double stiffness);
+
 // With multipliers (ADMM) constraints end exact instead of balanced against each other; they are kept between calls.
 void ax_solver_use_multipliers(ax_solver* solver, bool use);
 void ax_solver_reset_multipliers(ax_solver* solver);
@@ -85,7 +89,7 @@ double ax_solver_multiplier(const ax_solver* solver, int group, int constraint);
 void ax_solver_cap_multipliers(ax_solver* solver, double length);
 
 // Anderson acceleration: every iteration starts from a combination of the last `window` + 1 (1 .. 8, 5 is a good one; 0: none, the
-// standard), taken back where it raises the energy or, with multipliers, where the step does not shorten. Memory grows by
+// standard), taken back where it raises the energy or, with multipliers or a proximal term, where the step does not shorten. Memory grows by
 // 2 window + 3 copies of places and multipliers; results then depend on the iterations before. Any change by one of the
 // functions above forgets those.
 void ax_solver_accelerate(ax_solver* solver, int window);
