@@ -1236,7 +1236,7 @@ static void results_do_not_depend_on_resolution(void** state)
              "{\"op\": \"rim_spline\", \"points\": [[1.2, 0, 0], [0, 1.15, 0.3], [-1.2, 0, 0], [0, -1.15, 0.3]]}, "
              "{\"op\": \"inflation\"}",
         "{\"op\": \"start_polygon\", \"sides\": 8, \"radius\": 1, \"triangles\": %d, \"scale\": 1.2}, {\"op\": "
-        "\"formula\", \"formula\": \"1.35 + 0.12*cos(3*theta)*r\"}, {\"op\": \"rim_circle\", \"radius\": 1.25}, "
+        "\"formula\", \"formula\": \"1.35 + 0.08*cos(3*theta)*r\"}, {\"op\": \"rim_circle\", \"radius\": 1.25}, "
         "{\"op\": \"gravity\"}",
     };
     size_t count = getenv("AX_QUICK") ? 0 : sizeof recipes / sizeof *recipes;

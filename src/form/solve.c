@@ -27,6 +27,7 @@ enum {
     REST_CHECK = 25
 };
 static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 1e-3, good_error = 5e-3;
+static const char loading[] = "Loading the sheet";
 
 void ax_form_drop_solvers(ax_form* f)
 {
@@ -726,19 +727,30 @@ static bool run(ax_form* f, bool shape, int least, int most, double error, const
     return true;
 }
 
-// For given iterations; 0: until forces are in balance. False if cancelled.
+// Near the rest and then to it. False if cancelled.
+static bool come_to_rest(ax_form* f, const ax_progress* progress, double lo, double hi, bool* balanced)
+{
+    ax_progress_part part;
+    return run(f, false, LOAD_ITERATIONS, LOAD_ITERATIONS, near_error, progress, loading, lo, (lo + hi) / 2) &&
+           ax_form_balance(f, load_per_area(f), ax_progress_within(&part, progress, (lo + hi) / 2, hi), balanced);
+}
+
+// For given iterations; 0: until forces are in balance. From where it is, so that slack parts stay as they lie; else from the open
+// shape, whose edges are right. False if cancelled.
 static bool load_sheet(ax_form* f, int iterations, const ax_progress* progress)
 {
-    const char* stage = "Loading the sheet";
     if (iterations > 0)
-        return run(f, false, iterations, iterations, rest_error, progress, stage, 0.5, 1);
-    if (!run(f, false, LOAD_ITERATIONS, LOAD_ITERATIONS, near_error, progress, stage, 0.5, 0.6))
-        return false;
-    ax_progress_part part;
+        return run(f, false, iterations, iterations, rest_error, progress, loading, 0.5, 1);
     bool balanced;
-    if (!ax_form_balance(f, load_per_area(f), ax_progress_within(&part, progress, 0.6, 0.8), &balanced))
+    if (!come_to_rest(f, progress, 0.5, 0.65, &balanced))
         return false;
-    return balanced || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, rest_error, progress, stage, 0.8, 1);
+    if (!balanced && ax_form_shares(f)) {
+        memcpy(f->simulated, f->deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
+        ax_solver_reset_multipliers(f->hang);
+        if (!come_to_rest(f, progress, 0.65, 0.8, &balanced))
+            return false;
+    }
+    return balanced || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, rest_error, progress, loading, 0.8, 1);
 }
 
 ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress, ax_error* error)
