@@ -10,7 +10,11 @@
 
 static const double enough =
     1e-4; // residuals of states that lie within 0.005 of an edge of where they would come to rest
-enum { MOST_STEPS = 15 };
+enum {
+    LEAST_STEPS = 4,
+    MOST_STEPS = 15,
+    PANELS_OF_MOST = 3000
+}; // small forms are worth a search, large ones a few steps
 
 static bool hold(ax_hold* holds, int h, ax_hold with)
 {
@@ -133,7 +137,9 @@ bool ax_form_balance(ax_form* f, double load, const ax_progress* progress, bool*
         force[e] = edges[m.edge_source[e] / 3][m.edge_source[e] % 3] / whole;
 
     ax_newton* newton = ax_newton_make(&m, f->pool);
-    ax_newton_result result = ax_newton_run(newton, x, force, enough, MOST_STEPS, progress);
+    int steps = (int)((long)MOST_STEPS * PANELS_OF_MOST / linkage->triangle_count);
+    steps = steps < LEAST_STEPS ? LEAST_STEPS : steps > MOST_STEPS ? MOST_STEPS : steps;
+    ax_newton_result result = ax_newton_run(newton, x, force, enough, steps, progress);
     ax_newton_free(newton);
     *balanced = result.reached;
     if (result.reached) {

@@ -731,7 +731,10 @@ static bool run(ax_form* f, bool shape, int least, int most, double error, const
 static bool come_to_rest(ax_form* f, const ax_progress* progress, double lo, double hi, bool* balanced)
 {
     ax_progress_part part;
-    return run(f, false, LOAD_ITERATIONS, LOAD_ITERATIONS, near_error, progress, loading, lo, (lo + hi) / 2) &&
+    *balanced = false;
+    if (!run(f, false, LOAD_ITERATIONS, LOAD_ITERATIONS, near_error, progress, loading, lo, (lo + hi) / 2))
+        return false;
+    return ax_form_simulated_error(f) > good_error ||
            ax_form_balance(f, load_per_area(f), ax_progress_within(&part, progress, (lo + hi) / 2, hi), balanced);
 }
 
