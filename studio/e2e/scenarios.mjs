@@ -221,7 +221,7 @@ export const scenarios = {
                 window.answer = await auxshell.session.command("new", { recipe: operators });
                 stop();
                 return seen;
-            }, [{ ...circle, triangles: 1500 }, ...bowl.slice(1)]);
+            }, [{ ...circle, triangles: 5000 }, ...bowl.slice(1)]);
             assert.equal(await page.evaluate(() => window.answer), null);
             assert.ok(heights.length >= 4, `${heights.length} states were seen`);
             await page.waitForFunction(() => !auxshell.session.making.value);
