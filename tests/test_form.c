@@ -555,6 +555,33 @@ static void a_loaded_form_rests(void** state)
     }
 }
 
+// Free to slide in a plane and held by nothing else, a form has no place that its supports tell.
+static void a_form_on_a_plane_alone_settles(void** state)
+{
+    (void)state;
+    ax_form* form = disk(200, 1.3);
+    paint(form, sphere);
+    ax_form_view view = ax_form_look(form);
+    int n = view.linkage->hinge_count, *rim = AX_NEW(int, n);
+    ax_form_constraint ground = {.name = "ground",
+                                 .kind = AX_HELD_PLANE_GIVEN,
+                                 .count = ax_linkage_rim(view.linkage, rim),
+                                 .hinges = rim,
+                                 .weight = 1,
+                                 .support = true,
+                                 .direction = {0, 0, 1}};
+    ax_error error;
+    assert_int_equal(ax_form_put_constraint(form, &ground, &error), AX_OK);
+    ax_free(rim);
+    set_dynamics(form, AX_DYNAMICS_GRAVITY, 3);
+    settle(form);
+    view = ax_form_look(form);
+    for (int h = 0; h < n; ++h)
+        for (int c = 0; c < 3; ++c)
+            assert_at_most(fabs(view.simulated[h][c]), 10);
+    ax_form_free(form);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -565,6 +592,7 @@ int main(void)
         cmocka_unit_test(a_cancelled_settle_changes_nothing),
         cmocka_unit_test(a_loaded_form_deploys_in_time),
         cmocka_unit_test(a_loaded_form_rests),
+        cmocka_unit_test(a_form_on_a_plane_alone_settles),
         cmocka_unit_test(constraints_hold),
         cmocka_unit_test(shapes_do_not_depend_on_resolution),
         cmocka_unit_test(scale_factors_are_judged_away_from_the_rim),

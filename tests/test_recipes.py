@@ -139,6 +139,15 @@ class Recipes(CommandCase):
         self.assertLess(report["force_residual"], 1e-10)
         self.assertEqual(report["overlap_pairs"] + report["flipped_flat"], 0)
 
+    def test_a_first_dome_settles(self):
+        # its sheet starts on the wrong side of what its rim has room for
+        bowl = [{"op": "start_circle", "radius": 5, "triangles": 600, "scale": 1.2},
+                {"op": "gradient_radial", "radius": 5, "inner": 1.5, "outer": 1.15},
+                {"op": "rim_circle", "radius": 5.5}, {"op": "inflation"}]
+        words = self.succeed("run", self.write(bowl), "-o", self.folder / "x.auxshell")
+        self.assertIn("Settled after", words)
+        self.assertNotIn("Edges are off", words)
+
     def test_a_sheet_without_room_to_bulge_is_refused_in_words(self):
         taut = [{"op": "start_circle", "radius": 1, "triangles": 200, "scale": 1.5}, {"op": "rim_circle", "radius": 1.55},
                 {"op": "gravity"}, {"op": "finish"}]

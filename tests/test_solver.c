@@ -246,6 +246,48 @@ static void every_two_types_in_conflict_find_a_balance(void** state)
     ax_curve_free(curve);
 }
 
+// It takes another way to the same end, accelerated too, and holds what no row does.
+static void a_proximal_term_changes_the_way_and_not_the_end(void** state)
+{
+    (void)state;
+    grid g = make_grid(8);
+    double(*end[3])[3], first[3];
+    for (int way = 0; way < 3; ++way) { // none, with it, and accelerated
+        ax_solver* s = grow(&g, NULL);
+        for (int e = 0; e < g.edges; ++e) // taut: one end only
+            ax_solver_set(s, 0, e, length_lane(), 0.8 * ax_solver_get(s, 0, e, length_lane()));
+        ax_solver_set_proximal(s, way ? 0.3 : 0);
+        ax_solver_accelerate(s, way == 2 ? 5 : 0);
+        end[way] = ax_alloc((size_t)g.points, sizeof **end);
+        assert_true(ax_solver_iterate(s, 1));
+        ax_solver_get_places(s, end[way]);
+        first[way] = ax_distance3(end[way][1], g.place[1]);
+        assert_true(ax_solver_iterate(s, 8000));
+        ax_solver_get_places(s, end[way]);
+        ax_solver_free(s);
+    }
+    assert_true(first[1] < 0.95 * first[0]); // the first step is shorter
+    for (int v = 0; v < g.points; ++v)
+        for (int way = 1; way < 3; ++way)
+            assert_at_most(ax_distance3(end[0][v], end[way][v]), 1e-6);
+    for (int way = 0; way < 3; ++way)
+        ax_free(end[way]);
+
+    int corner = 0;
+    ax_solver* loose = ax_solver_make(g.points, (const double(*)[3])g.place, NULL);
+    ax_solver_add(loose, ax_constraint_find("closeness"), 1, 1, &corner, 1, NULL);
+    assert_false(ax_solver_iterate(loose, 1));
+    ax_solver_set_proximal(loose, 1e-3);
+    assert_true(ax_solver_iterate(loose, 10));
+    double(*x)[3] = ax_alloc((size_t)g.points, sizeof *x);
+    ax_solver_get_places(loose, x);
+    for (int v = 0; v < g.points; ++v)
+        assert_at_most(ax_distance3(x[v], g.place[v]), 1e-9);
+    ax_free(x);
+    ax_solver_free(loose);
+    free_grid(&g);
+}
+
 static void a_point_bound_by_nothing_is_reported(void** state)
 {
     (void)state;
@@ -367,6 +409,7 @@ int main(void)
         cmocka_unit_test(a_loaded_edge_stretches_by_force_over_weight),
         cmocka_unit_test(a_free_point_falls_as_implicit_euler_says),
         cmocka_unit_test(every_two_types_in_conflict_find_a_balance),
+        cmocka_unit_test(a_proximal_term_changes_the_way_and_not_the_end),
         cmocka_unit_test(a_point_bound_by_nothing_is_reported),
         cmocka_unit_test(panels_solve_what_was_factorised),
         cmocka_unit_test(places_that_tell_nothing_apart_still_order),

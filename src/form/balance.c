@@ -8,13 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double enough =
-    1e-4; // residuals of states that lie within 0.005 of an edge of where they would come to rest
-enum {
-    LEAST_STEPS = 4,
-    MOST_STEPS = 15,
-    PANELS_OF_MOST = 3000
-}; // small forms are worth a search, large ones a few steps
+// Residuals of states that lie within 0.005 of an edge of where they would come to rest.
+static const double enough = 1e-4;
+// Small forms are worth a search, large ones a few steps.
+enum { LEAST_STEPS = 4, MOST_STEPS = 15, PANELS_OF_MOST = 3000 };
 
 static bool hold(ax_hold* holds, int h, ax_hold with)
 {
@@ -24,7 +21,8 @@ static bool hold(ax_hold* holds, int h, ax_hold with)
     return true;
 }
 
-// What holds each hinge under the load, and where. False if something does that Newton does not know.
+// What holds each hinge under the load, and where. False if something does that Newton does not know, or planes alone, in which all
+// may slide.
 static bool list_supports(const ax_form* f, ax_hold* holds, double (*places)[3])
 {
     bool known = ax_form_shares(f); // else rims slide under the load, in their order
@@ -47,22 +45,22 @@ static bool list_supports(const ax_form* f, ax_hold* holds, double (*places)[3])
                 known = hold(holds, h, (ax_hold){.kind = AX_HOLD_ON_CURVE, .curve = f->held_holder[k].curve}) && known;
             else if (c->kind == AX_HELD_PLANE_GIVEN) {
                 ax_hold plane = {.kind = AX_HOLD_IN_PLANE};
-                double length = ax_norm3(c->direction), off[3];
+                double length = ax_norm3(c->direction);
                 for (int d = 0; d < 3; ++d)
                     plane.normal[d] = c->direction[d] / length;
                 known = hold(holds, h, plane) && known;
-                ax_sub3(places[h], c->point, off);
-                double away = ax_dot3(off, plane.normal);
-                for (int d = 0; d < 3; ++d)
-                    places[h][d] -= away * plane.normal[d];
+                memcpy(places[h], c->point, sizeof *places);
             } else
                 known = false;
         }
     }
     // air is kept in by a membrane across what is open, whose apex is not the same in both
-    for (int h = 0; h < f->lattice.linkage.hinge_count && f->dynamics.kind == AX_DYNAMICS_INFLATION; ++h)
-        known = known && (!f->lattice.linkage.on_rim[h] || holds[h].kind != AX_HOLD_FREE);
-    return known;
+    bool inflated = f->dynamics.kind == AX_DYNAMICS_INFLATION, placed = false;
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h) {
+        known = known && !(inflated && f->lattice.linkage.on_rim[h] && holds[h].kind == AX_HOLD_FREE);
+        placed = placed || holds[h].kind == AX_HOLD_FIXED || holds[h].kind == AX_HOLD_ON_CURVE;
+    }
+    return known && placed;
 }
 
 static void unit_between(const double from[3], const double to[3], double d[3])
@@ -125,8 +123,9 @@ bool ax_form_balance(ax_form* f, double load, const ax_progress* progress, bool*
     double(*x)[3] = ax_alloc((size_t)n, sizeof *x), *force = AX_NEW0(double, m.edge_count);
     for (int h = 0; h < n; ++h)
         for (int c = 0; c < 3; ++c)
-            x[h][c] =
-                (holds[h].kind == AX_HOLD_FREE ? f->simulated[h][c] : places[h][c]) / m.unit - m.centre[c] / m.unit;
+            x[h][c] = ((holds[h].kind == AX_HOLD_FIXED ? places : f->simulated)[h][c] - m.centre[c]) / m.unit;
+    for (int k = 0; k < m.slide_count; ++k)
+        ax_deploy_return(&m, m.slide[k], x[m.slide[k]], x[m.slide[k]]);
     size_t count = ax_solver_multiplier_count(f->hang);
     double *multipliers = AX_NEW(double, count), (*panel)[3][3] = (double(*)[3][3])multipliers;
     double(*edges)[3] = ax_alloc((size_t)linkage->triangle_count, sizeof *edges);

@@ -26,11 +26,6 @@ ax_form_dynamics ax_form_dynamics_default(void)
 
 // ---- copies -------------------------------------------------------------------------------------------------------------------
 
-static char* copy_text(const char* text)
-{
-    return ax_copy(text, strlen(text) + 1, 1);
-}
-
 static ax_curve_shape copy_shape(const ax_curve_shape* shape)
 {
     ax_curve_shape copy = *shape;
@@ -57,7 +52,7 @@ void ax_rim_part_release(ax_rim_part* part)
 ax_form_constraint ax_form_constraint_copy(const ax_form_constraint* c)
 {
     ax_form_constraint copy = *c;
-    copy.name = copy_text(c->name);
+    copy.name = ax_copy_text(c->name);
     copy.hinges = ax_copy(c->hinges, (size_t)c->count, sizeof *c->hinges);
     copy.places = c->kind == AX_HELD_FIXED ? ax_copy(c->places, (size_t)c->count, sizeof *c->places) : NULL;
     copy.curve = c->kind == AX_HELD_CURVE ? copy_shape(&c->curve) : (ax_curve_shape){0};
@@ -192,8 +187,8 @@ static int* list_directions(const ax_form* f)
         const int *up = a[2] ? b : a, *down = a[2] ? a : b;
         direction[h] = down[0] < up[0] ? 1 : down[1] < up[1] ? 0 : 2;
     }
-    for (int t = 0; t < linkage->triangle_count;
-         ++t) // on the rim from the others of the panel: 2, 1, 0 counter-clockwise
+    // on the rim from the others of the panel: 2, 1, 0 counter-clockwise
+    for (int t = 0; t < linkage->triangle_count; ++t)
         for (int k = 0; k < 3; ++k) {
             const int* h = linkage->triangles[t];
             if (linkage->on_rim[h[k]])
@@ -212,7 +207,7 @@ static void list_wide(ax_form* f)
     int *direction = list_directions(f), all = 0;
     f->wide = ax_alloc(3 * (size_t)linkage->triangle_count, sizeof *f->wide);
     f->wide_count = 0;
-    int apart = (int)fmax(1, round(sqrt(linkage->triangle_count / 600.0)));
+    int apart = (int)fmax(1, round(sqrt(ax_form_fineness(f))));
     for (int t = 0; t < linkage->triangle_count; ++t)
         for (int k = 0; k < 6; ++k) { // an edge begins a row in both directions
             int from = linkage->triangles[t][k % 3], at = linkage->triangles[t][(k + 1 + k / 3) % 3];
@@ -695,7 +690,7 @@ void ax_form_name_selection(ax_form* f, const char* name, int count, const int* 
         ++at;
     if (at == f->set_count) {
         f->sets = ax_realloc(f->sets, (size_t)++f->set_count, sizeof *f->sets);
-        f->sets[at].name = copy_text(name);
+        f->sets[at].name = ax_copy_text(name);
     } else
         ax_free(f->sets[at].hinges);
     f->sets[at].count = count;
@@ -723,7 +718,7 @@ void ax_form_put_underlay(ax_form* f, const char* name, const ax_mesh* mesh, dou
         f->underlay_names = ax_realloc((void*)f->underlay_names, count, sizeof *f->underlay_names);
         f->underlays = ax_realloc(f->underlays, count, sizeof *f->underlays);
         f->clearances = ax_realloc(f->clearances, count, sizeof *f->clearances);
-        f->underlay_names[at] = copy_text(name);
+        f->underlay_names[at] = ax_copy_text(name);
     } else
         ax_mesh_free(f->underlays + at);
     f->underlays[at] = ax_mesh_copy(mesh);

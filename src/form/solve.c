@@ -97,7 +97,7 @@ enum { FAIR_KINDS = 3 };
 static void list_fairness(const ax_form* f, double near, double bend, double wide, double growth,
                           fair_rows rows[FAIR_KINDS])
 {
-    wide *= f->wide_share * pow(f->lattice.linkage.triangle_count / 600.0, growth);
+    wide *= f->wide_share * pow(ax_form_fineness(f), growth);
     rows[0] = (fair_rows){4, f->line_count, (const int*)f->lines, near};
     rows[1] = (fair_rows){3, f->bend_count, (const int*)f->bends, bend};
     rows[2] = (fair_rows){4, wide > 0 ? f->wide_count : 0, (const int*)f->wide, wide};
@@ -502,13 +502,11 @@ static void measure_sides(ax_form* f)
 // What the shape's panels are to be.
 static void size_panels(ax_form* f)
 {
-    int t = f->lattice.linkage.triangle_count;
     bool shares = ax_form_shares(f);
-    for (int k = 0; k < t; ++k)
-        for (int c = 0; c < (shares ? 1 : 3); ++c)
-            f->lanes[(shares ? 1 : 3) * k + c] = ax_form_side(f, k);
-    int first = shares ? lane_of("shared_panel", "side") : lane_of("flat_triangle", "lengths");
-    ax_solver_set_all(f->shape, f->shape_groups.panels, first, shares ? 1 : 3, f->lanes);
+    int lanes = shares ? 1 : 3, first = shares ? lane_of("shared_panel", "side") : lane_of("flat_triangle", "lengths");
+    for (int k = 0; k < lanes * f->lattice.linkage.triangle_count; ++k)
+        f->lanes[k] = ax_form_side(f, k / lanes);
+    ax_solver_set_all(f->shape, f->shape_groups.panels, first, lanes, f->lanes);
 }
 
 // A hole's sides are those of its panels, flat and deployed alike.
@@ -652,7 +650,7 @@ static void lean(ax_form* f, bool on)
         double side = ax_form_side(f, t), share = sqrt(3) * side * side / 3; // it carries four times its area
         for (int k = 0; k < 3; ++k)
             for (int c = 0; c < 3; ++c)
-                f->scratch[n + linkage->triangles[t][k]][c] += load_strain / f->radius * share * along[c];
+                f->scratch[n + linkage->triangles[t][k]][c] += load_per_area(f) * share * along[c];
     }
     ax_solver_set_load(f->shape, on ? (const double(*)[3])f->scratch : NULL);
 }
@@ -781,7 +779,6 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
         ax_form_shares(f) && (ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0 || ax_form_left_over(f));
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
         ax_form_restart(f, 0.05), fresh = true;
-
     if (fresh) { // panels that give way before the holes are open settle for a flatter shape, and leave it slowly
         bool leans = ax_form_hangs(f) && ax_form_shares(f);
         allow_give(f, false);

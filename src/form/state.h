@@ -99,6 +99,12 @@ static inline bool ax_form_shares(const ax_form* f)
     return f->dynamics.kind == AX_DYNAMICS_EXPAND || (ax_form_hangs(f) && f->dynamics.adapt);
 }
 
+// Panels over those of the sheets for which weights of fairness were found, 600.
+static inline double ax_form_fineness(const ax_form* f)
+{
+    return f->lattice.linkage.triangle_count / 600.0;
+}
+
 // Edge of a panel as prescribed.
 static inline double ax_form_side(const ax_form* f, int triangle)
 {

@@ -39,11 +39,6 @@ struct hub {
     int numbers; // clients so far
 };
 
-static char* text_copy(const char* text)
-{
-    return text ? ax_copy(text, strlen(text) + 1, 1) : NULL;
-}
-
 void hub_lock(hub* h)
 {
     pthread_mutex_lock(&h->lock);
@@ -366,7 +361,7 @@ void hub_renamed(hub* h, const char* old, const char* id)
 {
     if (strcmp(h->start, old) == 0) {
         ax_free(h->start);
-        h->start = text_copy(id);
+        h->start = ax_copy_text(id);
     }
 }
 
@@ -489,7 +484,7 @@ static ax_status open_path(hub* h, hub_client* c, int re, const char* path, ax_e
         status = draft_new_id(draft, error);
     if (status == AX_OK)
         status = open_desk(h, c, re, document ? files_relative(h->files, whole) : draft,
-                           (desk_source){.path = text_copy(whole)}, error);
+                           (desk_source){.path = ax_copy_text(whole)}, error);
     ax_free(whole);
     return status;
 }
@@ -517,7 +512,7 @@ static ax_status join(hub* h, hub_client* c, const message* m, ax_error* error)
     if (!id)
         return ax_fail(error, AX_USAGE, "The first document was closed. Open one, or make a new one.");
     if (draft_exists(id))
-        return open_desk(h, c, m->id, id, (desk_source){.draft = text_copy(id)}, error);
+        return open_desk(h, c, m->id, id, (desk_source){.draft = ax_copy_text(id)}, error);
     if (strchr(id, '.')) // ids of files are their paths
         return open_path(h, c, m->id, id, error);
     return ax_fail(error, AX_BAD_INPUT, "There is no document \"%.100s\" in this run.", id);
@@ -537,14 +532,14 @@ static ax_status open_document(hub* h, hub_client* c, const message* m, ax_error
     if (draft && !draft_exists(draft))
         return ax_fail(error, AX_BAD_INPUT, "There is no unsaved document \"%.100s\".", draft);
     if (draft)
-        return open_desk(h, c, m->id, draft, (desk_source){.draft = text_copy(draft)}, error);
+        return open_desk(h, c, m->id, draft, (desk_source){.draft = ax_copy_text(draft)}, error);
     char *file, name[NAME_LENGTH + 1], id[DRAFT_ID];
     status = files_upload(h->files, upload, &file, name, error);
     if (status == AX_OK)
         status = draft_new_id(id, error);
     if (status != AX_OK)
         return status;
-    return open_desk(h, c, m->id, id, (desk_source){.path = file, .uploaded = true, .name = text_copy(name)}, error);
+    return open_desk(h, c, m->id, id, (desk_source){.path = file, .uploaded = true, .name = ax_copy_text(name)}, error);
 }
 
 static ax_status new_document(hub* h, hub_client* c, const message* m, ax_error* error)
@@ -565,8 +560,8 @@ static ax_status new_document(hub* h, hub_client* c, const message* m, ax_error*
     status = draft_new_id(id, error);
     if (status != AX_OK)
         return status;
-    desk_source source = {.example = text_copy(example),
-                          .name = text_copy(name),
+    desk_source source = {.example = ax_copy_text(example),
+                          .name = ax_copy_text(name),
                           .recipe = json_incref(recipe),
                           .files = json_incref(uploads)};
     return open_desk(h, c, m->id, id, source, error);
@@ -738,13 +733,13 @@ ax_status hub_start(hub* h, const char* path, ax_error* error)
     if (path)
         status = files_within(h->files, path, &source.path, error);
     else {
-        source.example = text_copy(hello_first_example());
+        source.example = ax_copy_text(hello_first_example());
         status = AX_OK;
     }
     if (status == AX_OK)
         status = draft_new_id(id, error);
     if (status == AX_OK)
-        h->start = text_copy(path && is_document(path) ? files_relative(h->files, source.path) : id);
+        h->start = ax_copy_text(path && is_document(path) ? files_relative(h->files, source.path) : id);
     if (status != AX_OK) {
         free_source(&source);
         return status;

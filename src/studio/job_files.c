@@ -15,11 +15,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static char* text_copy(const char* text)
-{
-    return ax_copy(text, strlen(text) + 1, 1);
-}
-
 // ---- surfaces -----------------------------------------------------------------------------------------------------------------
 
 // Offers a picture for download; null if it could not be drawn.
@@ -326,7 +321,7 @@ static char* folder_of(const char* path)
 static char* name_of(const char* path)
 {
     const char* slash = strrchr(path, '/');
-    char* name = text_copy(slash ? slash + 1 : path);
+    char* name = ax_copy_text(slash ? slash + 1 : path);
     char* dot = strrchr(name, '.');
     if (dot && dot != name)
         *dot = 0;
@@ -469,7 +464,7 @@ ax_status job_open(desk* d, ax_error* error)
                        strrchr(from->path, '/') + 1);
     d->name = name_of(from->name ? from->name : from->path ? from->path : from->example ? from->example : "Untitled");
     if (document && !from->uploaded) {
-        d->path = text_copy(from->path);
+        d->path = ax_copy_text(from->path);
         return open_session(d, error);
     }
     d->draft = true;
@@ -480,7 +475,7 @@ ax_status job_open(desk* d, ax_error* error)
         char title[DRAFT_TITLE];
         draft_title(d->id, title);
         ax_free(d->name);
-        d->name = text_copy(title);
+        d->name = ax_copy_text(title);
         return open_session(d, error);
     }
     draft_set_title(d->id, d->name);
@@ -523,7 +518,7 @@ static ax_status move_to(desk* d, char* path, ax_error* error)
     ax_session_close(d->session);
     d->session = moved;
     d->exact = NULL;
-    char* old = text_copy(d->id);
+    char* old = ax_copy_text(d->id);
     desk_rename(d, files_relative(hub_files(d->hub), path));
     if (d->draft)
         draft_forget(old); // its files stay where steps find them
@@ -531,7 +526,7 @@ static ax_status move_to(desk* d, char* path, ax_error* error)
     ax_free(d->path);
     ax_free(d->name);
     d->draft = false;
-    d->path = text_copy(path);
+    d->path = ax_copy_text(path);
     d->name = name_of(path);
     return AX_OK;
 }
