@@ -1,4 +1,5 @@
-// Flattens a mesh, lays a sheet over its flat rim with the scale factors of the map, and lets the solver open it again.
+// Flattens a mesh, lays a sheet over its flat rim with the scale factors of the map, holds the rim on that of the mesh, and lets the
+// solver open it again. (Free, it could bend: scale factors alone do not tell one shape from another.)
 #include <ax/export.h>
 #include <ax/form.h>
 #include <math.h>
@@ -50,6 +51,21 @@ int main(int count, char** words)
         scale[t] = scale_at(&flat, middle, rim);
     }
     ax_form_prescribe(form, scale);
+    double(*curve)[3] = ax_alloc((size_t)flat.rim_count, sizeof *curve);
+    for (int k = 0; k < flat.rim_count; ++k)
+        for (int d = 0; d < 3; ++d)
+            curve[k][d] = mesh.positions[flat.rim[k]][d];
+    int* hinges = AX_NEW(int, view.linkage->hinge_count);
+    const ax_rim_part held = {
+        .kind = AX_RIM_SLIDE,
+        .count = ax_linkage_rim(view.linkage, hinges),
+        .hinges = hinges,
+        .curve = {.kind = AX_CURVE_POLYLINE,
+                  .closed = true,
+                  .count = flat.rim_count,
+                  .points = (const double(*)[3])curve}};
+    if (ax_form_set_rim(form, 1, &held, &error))
+        return say(&error);
     ax_form_dynamics dynamics = ax_form_dynamics_default();
     dynamics.kind = AX_DYNAMICS_EXPAND;
     ax_form_set_dynamics(form, &dynamics);
@@ -66,6 +82,8 @@ int main(int count, char** words)
     ax_design_free(&design);
     ax_form_report_free(&report);
     ax_form_free(form);
+    ax_free(hinges);
+    ax_free(curve);
     ax_free(scale);
     ax_free(outline);
     ax_flattening_free(&flat);
