@@ -139,11 +139,22 @@ ax_status ax_form_check_support(const ax_form* form, ax_error* error);
 // Solvers for what is asked now, if there are none.
 void ax_form_build(ax_form* form);
 void ax_form_drop_solvers(ax_form* form);
+// Place of a parameter among the lanes of a constraint type.
+int ax_form_lane(const char* type, const char* parameter);
+// Whether panels of both states may give way, as far as asked, or not at all for now.
+void ax_form_allow_give(ax_form* form, bool allowed);
+// The load that the solver takes, in forces per area.
+double ax_form_load_per_area(const ax_form* form);
 // Adds to a model what the loaded state's rows of fairness weigh, times `scale`.
 void ax_form_keep_fair(const ax_form* form, ax_deploy_model* model, double scale);
 // The loaded state at rest under `load`, the solver's force per area, from where the projective steps have brought it. Not balanced, and nothing
 // is changed, if it did not get there or something holds the form that Newton does not know. False if cancelled.
 bool ax_form_balance(ax_form* form, double load, const ax_progress* progress, bool* balanced);
+// Iterations of the shape, flat and deployed, and of the loaded state; solvers are built.
+void ax_form_iterate_shape(ax_form* form, int iterations);
+void ax_form_iterate_hang(ax_form* form, int iterations);
+// Sizes of the panels as both states have them now, or as prescribed: what the loaded state keeps.
+void ax_form_measure_sides(ax_form* form);
 // The flat state twisted analytically to the prescribed factors.
 void ax_form_twist(ax_form* form);
 // Multipliers of both solvers, counted in *count; owned by the caller. NULL if there are none.

@@ -1,0 +1,197 @@
+// Iterations of both states, and what moves between them: a hole's sides, the sizes of the panels under load, where the rim has slid to.
+#include "form/state.h"
+
+#include "base/vec.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { RESIZE_EVERY = 25 };
+
+void ax_form_twist(ax_form* f)
+{
+    ax_lattice_twist(&f->lattice, f->prescribed, f->flat);
+}
+
+// The sheet's panel centres, turned and shifted to where the flat state has them, grown only if collisions may grow it: the targets
+// that choose among the sheet's many flat states the one whose scale factors are the prescribed ones.
+static void aim_centres(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    int t = linkage->triangle_count;
+    double mean[2] = {0, 0}, re = 0, im = 0, norm = 0;
+    for (int k = 0; k < t; ++k)
+        for (int c = 0; c < 2; ++c) {
+            const int* h = linkage->triangles[k];
+            f->lanes[3 * k + c] = (f->flat[h[0]][c] + f->flat[h[1]][c] + f->flat[h[2]][c]) / 3;
+            mean[c] += f->lanes[3 * k + c] / t;
+        }
+    for (int k = 0; k < t; ++k) {
+        double x = f->lanes[3 * k] - mean[0], y = f->lanes[3 * k + 1] - mean[1];
+        double u = f->centres[k][0] - f->centre[0], v = f->centres[k][1] - f->centre[1];
+        re += u * x + v * y, im += u * y - v * x, norm += u * u + v * v;
+    }
+    re /= norm, im /= norm;
+    double fit = sqrt(re * re + im * im), growth = f->dynamics.collisions ? fmax(1, fit) : 1;
+    double s = fit > 0 ? growth / fit : 1;
+    re = fit > 0 ? re * s : 1, im *= s;
+    f->growth = growth;
+    for (int k = 0; k < t; ++k) {
+        double u = f->centres[k][0] - f->centre[0], v = f->centres[k][1] - f->centre[1];
+        f->lanes[3 * k] = mean[0] + re * u - im * v, f->lanes[3 * k + 1] = mean[1] + im * u + re * v;
+        f->lanes[3 * k + 2] = 0;
+    }
+    ax_solver_set_all(f->shape, f->shape_groups.centres, 0, 3, f->lanes);
+}
+
+// Sizes of the panels: shared by both states where they are, else as prescribed.
+void ax_form_measure_sides(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    bool shares = ax_form_shares(f);
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int k = 0; k < 3; ++k) {
+            int a = linkage->triangles[t][(k + 1) % 3], b = linkage->triangles[t][(k + 2) % 3];
+            f->side[t][k] =
+                shares ? 0.5 * (ax_distance2(f->flat[a], f->flat[b]) + ax_distance3(f->deployed[a], f->deployed[b]))
+                       : ax_form_side(f, t);
+        }
+}
+
+// What the shape's panels are to be.
+static void size_panels(ax_form* f)
+{
+    bool shares = ax_form_shares(f);
+    int lanes = shares ? 1 : 3,
+        first = shares ? ax_form_lane("shared_panel", "side") : ax_form_lane("flat_triangle", "lengths");
+    for (int k = 0; k < lanes * f->lattice.linkage.triangle_count; ++k)
+        f->lanes[k] = ax_form_side(f, k / lanes);
+    ax_solver_set_all(f->shape, f->shape_groups.panels, first, lanes, f->lanes);
+}
+
+// A hole's sides are those of its panels, flat and deployed alike.
+static void size_holes(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    for (int k = 0; k < f->hole_count; ++k) {
+        const int* h = linkage->hole_hinges + linkage->hole_start[f->holes[k]];
+        for (int i = 0; i < 6; ++i) {
+            int a = h[i], b = h[(i + 1) % 6];
+            f->lanes[6 * k + i] =
+                0.5 * (ax_distance2(f->flat[a], f->flat[b]) + ax_distance3(f->deployed[a], f->deployed[b]));
+        }
+    }
+    ax_solver_set_all(f->shape, f->shape_groups.holes, ax_form_lane("cyclic_polygon", "sides"), 6, f->lanes);
+}
+
+static void put_states(ax_form* f)
+{
+    int n = f->lattice.linkage.hinge_count;
+    for (int h = 0; h < n; ++h)
+        f->scratch[h][0] = f->flat[h][0], f->scratch[h][1] = f->flat[h][1], f->scratch[h][2] = 0;
+    if (ax_form_shares(f))
+        memcpy(f->scratch + n, f->deployed, (size_t)n * sizeof *f->deployed);
+    ax_solver_set_places(f->shape, (const double(*)[3])f->scratch);
+}
+
+static void take_states(ax_form* f)
+{
+    int n = f->lattice.linkage.hinge_count;
+    ax_solver_get_places(f->shape, f->scratch);
+    double most = 0;
+    for (int h = 0; h < n; ++h)
+        for (int c = 0; c < 2; ++c) {
+            most = fmax(most, fabs(f->scratch[h][c] - f->flat[h][c]));
+            f->flat[h][c] = f->scratch[h][c];
+        }
+    if (ax_form_shares(f))
+        for (int h = 0; h < n; ++h)
+            for (int c = 0; c < 3; ++c) {
+                most = fmax(most, fabs(f->scratch[n + h][c] - f->deployed[h][c]));
+                f->deployed[h][c] = f->scratch[n + h][c];
+            }
+    f->scaled_step = most / f->lattice.spacing;
+}
+
+void ax_form_iterate_shape(ax_form* f, int iterations)
+{
+    put_states(f);
+    size_panels(f);
+    ax_solver_prepare(f->shape);
+    for (int k = 0; k < iterations; ++k) {
+        if (k % RESIZE_EVERY == 0 && ax_form_shares(f) && f->hole_count)
+            size_holes(f);
+        aim_centres(f);
+        ax_solver_iterate(f->shape, 1);
+        take_states(f);
+    }
+}
+
+// A frame is built as designed. Were its hinges to slide under the load too, the sheet would turn in any rim that is nearly round,
+// by next to no force and for thousands of iterations.
+static void hold_rim(ax_form* f)
+{
+    for (int k = 0; k < f->rim_count && ax_form_shares(f); ++k) {
+        const ax_rim_part* part = f->rim + k;
+        if (part->kind != AX_RIM_SLIDE || part->count == 0)
+            continue;
+        for (int i = 0; i < part->count; ++i)
+            memcpy(f->scratch[i], f->deployed[part->hinges[i]], sizeof *f->scratch);
+        ax_solver_set_all(f->hang, f->hang_groups.rim[k], 0, 3, *f->scratch);
+    }
+}
+
+void ax_form_iterate_hang(ax_form* f, int iterations)
+{
+    int n = f->lattice.linkage.hinge_count;
+    ax_form_measure_sides(f);
+    ax_solver_set_all(f->hang, f->hang_groups.panels, ax_form_lane("rigid_triangle", "lengths"), 3, f->side[0]);
+    hold_rim(f);
+    if (f->dynamics.kind == AX_DYNAMICS_GRAVITY) { // the weight is that of the flat sheet
+        for (int h = 0; h < n; ++h)
+            f->scratch[h][0] = f->flat[h][0], f->scratch[h][1] = f->flat[h][1], f->scratch[h][2] = 0;
+        ax_solver_measure_load(f->hang, f->load, (const double(*)[3])f->scratch);
+    }
+    ax_solver_set_places(f->hang, (const double(*)[3])f->simulated);
+    ax_solver_prepare(f->hang);
+    for (int k = 0; k < iterations; ++k) {
+        if (k == iterations - 1)
+            ax_solver_get_places(f->hang, f->scratch);
+        ax_solver_iterate(f->hang, 1);
+    }
+    ax_solver_get_places(f->hang, f->simulated);
+    for (int h = 0; h < n; ++h)
+        for (int c = 0; c < 3; ++c)
+            f->scaled_step = fmax(f->scaled_step, fabs(f->simulated[h][c] - f->scratch[h][c]) / f->lattice.spacing);
+    if (!ax_form_shares(f))
+        memcpy(f->deployed, f->simulated, (size_t)n * sizeof *f->deployed);
+}
+
+void ax_form_iterate(ax_form* f, int iterations)
+{
+    ax_form_build(f);
+    ax_form_iterate_shape(f, iterations);
+    if (ax_form_hangs(f))
+        ax_form_iterate_hang(f, iterations);
+    else
+        ax_form_measure_sides(f);
+    f->iterations += iterations;
+    f->exact = f->settled = false;
+    ++f->revision;
+}
+
+void ax_form_restart(ax_form* f, double height)
+{
+    int n = f->lattice.linkage.hinge_count;
+    double up = ax_form_hangs(f)
+                    ? (f->dynamics.kind == AX_DYNAMICS_GRAVITY && f->dynamics.load.direction[2] < 0 ? -1 : 1)
+                    : (ax_form_bulge(f) < 0 ? -1 : 1);
+    for (int h = 0; h < n; ++h) {
+        double r = ax_distance2(f->lattice.hinges[h], f->centre) / f->radius;
+        double bulge = height * f->radius * fmax(0, 1 - r * r) * up;
+        for (int c = 0; c < 2; ++c)
+            f->deployed[h][c] = f->simulated[h][c] = f->flat[h][c];
+        f->deployed[h][2] = f->simulated[h][2] = bulge;
+    }
+    ax_form_changed(f, false, true);
+}

@@ -1,0 +1,184 @@
+// Settling: both states until they rest.
+#include "form/state.h"
+
+#include "base/vec.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    FRESH_ITERATIONS = 100,
+    FLAT_ITERATIONS = 400,
+    SHAPE_ITERATIONS = 650,
+    LOAD_ITERATIONS = 400,
+    MOST_ITERATIONS = 2000,
+    REST_CHECK = 25
+};
+static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 1e-3, good_error = 5e-3;
+static const char loading[] = "Loading the sheet";
+
+// While a fresh sheet opens, its load leans on it, spread evenly: what lies between a painted dome and a rim with too little room for it
+// opens upwards or downwards with equal ease, and as fairness has it, against the load. Panels keep their sizes meanwhile, so that
+// nothing yields to it.
+static void lean(ax_form* f, bool on)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    int n = linkage->hinge_count;
+    bool weight = f->dynamics.kind == AX_DYNAMICS_GRAVITY;
+    const double up[3] = {0, 0, 1}, *along = weight ? f->dynamics.load.direction : up;
+    memset(f->scratch, 0, 2 * (size_t)n * sizeof *f->scratch);
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double side = ax_form_side(f, t), share = sqrt(3) * side * side / 3; // it carries four times its area
+        for (int k = 0; k < 3; ++k)
+            for (int c = 0; c < 3; ++c)
+                f->scratch[n + linkage->triangles[t][k]][c] += ax_form_load_per_area(f) * share * along[c];
+    }
+    ax_solver_set_load(f->shape, on ? (const double(*)[3])f->scratch : NULL);
+}
+
+// States as they were before a call that is cancelled.
+typedef struct snapshot {
+    double (*flat)[2], (*deployed)[3], (*simulated)[3], (*side)[3], *multipliers, growth;
+    size_t count;
+    int iterations;
+} snapshot;
+
+static snapshot keep(const ax_form* f)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    snapshot s = {.flat = ax_copy(f->flat, n, sizeof *f->flat),
+                  .deployed = ax_copy(f->deployed, n, sizeof *f->deployed),
+                  .simulated = ax_copy(f->simulated, n, sizeof *f->simulated),
+                  .side = ax_copy(f->side, (size_t)f->lattice.linkage.triangle_count, sizeof *f->side),
+                  .growth = f->growth,
+                  .iterations = f->iterations};
+    s.multipliers = ax_form_multipliers(f, &s.count);
+    return s;
+}
+
+static void restore(ax_form* f, snapshot* s)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    memcpy(f->flat, s->flat, n * sizeof *f->flat);
+    memcpy(f->deployed, s->deployed, n * sizeof *f->deployed);
+    memcpy(f->simulated, s->simulated, n * sizeof *f->simulated);
+    memcpy(f->side, s->side, (size_t)f->lattice.linkage.triangle_count * sizeof *f->side);
+    f->growth = s->growth;
+    f->iterations = s->iterations;
+    ax_form_drop_solvers(f);
+    ax_free(f->pending);
+    f->pending = s->multipliers;
+    f->pending_count = s->count;
+    s->multipliers = NULL;
+}
+
+static void forget(snapshot* s)
+{
+    ax_free(s->flat);
+    ax_free(s->deployed);
+    ax_free(s->simulated);
+    ax_free(s->side);
+    ax_free(s->multipliers);
+}
+
+// Iterates one of the two until its edges are right within `error` and it rests, or for `least` iterations, and on to `most` while edges
+// are off. False if cancelled.
+static bool run(ax_form* f, bool shape, int least, int most, double error, const ax_progress* progress,
+                const char* stage, double lo, double hi)
+{
+    for (int done = 0; done < most;) {
+        int count = REST_CHECK < most - done ? REST_CHECK : most - done;
+        f->scaled_step = 0;
+        if (shape)
+            ax_form_iterate_shape(f, count);
+        else
+            ax_form_iterate_hang(f, count);
+        done += count;
+        f->iterations += count;
+        double off = shape ? fmax(ax_form_flat_error(f), ax_form_shares(f) ? ax_form_deployed_error(f) : 0)
+                           : ax_form_simulated_error(f);
+        if (!ax_progress_report(progress, stage, lo + (hi - lo) * done / most, off))
+            return false;
+        bool near = off < error && (error > rest_error || f->scaled_step < rest_step);
+        if (near || (done >= least && off < good_error))
+            return true;
+    }
+    return true;
+}
+
+// Near the rest and then to it. False if cancelled.
+static bool come_to_rest(ax_form* f, const ax_progress* progress, double lo, double hi, bool* balanced)
+{
+    ax_progress_part part;
+    *balanced = false;
+    if (!run(f, false, LOAD_ITERATIONS, LOAD_ITERATIONS, near_error, progress, loading, lo, (lo + hi) / 2))
+        return false;
+    return ax_form_simulated_error(f) > good_error ||
+           ax_form_balance(f, ax_form_load_per_area(f), ax_progress_within(&part, progress, (lo + hi) / 2, hi),
+                           balanced);
+}
+
+// For given iterations; 0: until forces are in balance. From where it is, so that slack parts stay as they lie; else from the open
+// shape, whose edges are right. False if cancelled.
+static bool load_sheet(ax_form* f, int iterations, const ax_progress* progress)
+{
+    if (iterations > 0)
+        return run(f, false, iterations, iterations, rest_error, progress, loading, 0.5, 1);
+    bool balanced;
+    if (!come_to_rest(f, progress, 0.5, 0.65, &balanced))
+        return false;
+    if (!balanced && ax_form_shares(f)) {
+        memcpy(f->simulated, f->deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
+        ax_solver_reset_multipliers(f->hang);
+        if (!come_to_rest(f, progress, 0.65, 0.8, &balanced))
+            return false;
+    }
+    return balanced || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, rest_error, progress, loading, 0.8, 1);
+}
+
+ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress, ax_error* error)
+{
+    int least = ax_form_shares(f) ? SHAPE_ITERATIONS : FLAT_ITERATIONS, most = MOST_ITERATIONS;
+    if (iterations > 0)
+        least = most = iterations;
+    int n = f->lattice.linkage.hinge_count;
+    ax_status held = ax_form_hangs(f) ? ax_form_check_support(f, error) : AX_OK;
+    if (held != AX_OK)
+        return held;
+    snapshot before = keep(f);
+    ax_form_build(f);
+    // The flat state starts from the twist of its factors, so that it does not depend on the way here; the deployed one starts
+    // out of the plane, where it would stay locked, and afresh where panels have folded onto each other or turned over: they would not
+    // come back.
+    ax_form_twist(f);
+    if (!ax_form_shares(f))
+        ax_solver_reset_multipliers(f->shape);
+    bool fresh = false;
+    double lo = INFINITY, hi = -INFINITY;
+    for (int h = 0; h < n; ++h)
+        lo = fmin(lo, f->deployed[h][2]), hi = fmax(hi, f->deployed[h][2]);
+    bool folded =
+        ax_form_shares(f) && (ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0 || ax_form_left_over(f));
+    if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
+        ax_form_restart(f, 0.05), fresh = true;
+    if (fresh) { // panels that give way before the holes are open settle for a flatter shape, and leave it slowly
+        bool leans = ax_form_hangs(f) && ax_form_shares(f);
+        ax_form_allow_give(f, false);
+        if (leans)
+            lean(f, true);
+        ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : FRESH_ITERATIONS);
+        if (leans)
+            lean(f, false);
+        ax_form_allow_give(f, true);
+    }
+    bool going = run(f, true, least, most, rest_error, progress, "Shaping the sheet", 0, ax_form_hangs(f) ? 0.5 : 1);
+    ax_form_measure_sides(f);
+    if (going && ax_form_hangs(f))
+        going = load_sheet(f, iterations, progress);
+    if (!going)
+        restore(f, &before);
+    forget(&before);
+    f->exact = false;
+    ++f->revision;
+    return going ? AX_OK : ax_fail(error, AX_CANCELLED, "Cancelled.");
+}
