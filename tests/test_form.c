@@ -455,6 +455,37 @@ static void scale_factors_are_judged_away_from_the_rim(void** state)
     ax_design_free(&design);
 }
 
+// At the rim of a design panels are of other sizes than their factors tell; they keep them, and nothing is bent there.
+static void a_design_of_uneven_panels_settles_where_it_lies(void** state)
+{
+    (void)state;
+    ax_design design = sample_design();
+    for (int give = 0; give <= 3; give += 3) { // sizes as they are, and sizes that may give way
+        ax_error error;
+        ax_form* form;
+        assert_int_equal(ax_form_from_design(&design, &form, &error), AX_OK);
+        set_dynamics(form, AX_DYNAMICS_INFLATION, give);
+        settle(form);
+        ax_form_report r = measured(form);
+        assert_true(r.settled);
+        ax_form_view view = ax_form_look(form);
+        double smallest = INFINITY, off = 0;
+        for (int t = 0; t < view.linkage->triangle_count; ++t) {
+            const int* h = view.linkage->triangles[t];
+            double was = ax_distance2(design.flat[h[0]], design.flat[h[1]]);
+            smallest = fmin(smallest, was / r.edge);
+            off = fmax(off, fabs(ax_distance2(view.flat[h[0]], view.flat[h[1]]) / was - 1));
+        }
+        assert_true(smallest < 0.8); // uneven indeed
+        assert_at_most(off, give ? 0.2 : 1e-3);
+        for (int h = 0; h < view.linkage->hinge_count; ++h)
+            assert_at_most(ax_distance3(view.simulated[h], design.deployed[h]), 0.3 * r.edge);
+        ax_form_report_free(&r);
+        ax_form_free(form);
+    }
+    ax_design_free(&design);
+}
+
 static void painted_curvature_is_summed_before_any_solve(void** state)
 {
     (void)state;
@@ -596,6 +627,7 @@ int main(void)
         cmocka_unit_test(constraints_hold),
         cmocka_unit_test(shapes_do_not_depend_on_resolution),
         cmocka_unit_test(scale_factors_are_judged_away_from_the_rim),
+        cmocka_unit_test(a_design_of_uneven_panels_settles_where_it_lies),
         cmocka_unit_test(painted_curvature_is_summed_before_any_solve),
         cmocka_unit_test(too_little_material_is_told),
         cmocka_unit_test(unusable_requests_are_refused),

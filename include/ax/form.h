@@ -221,6 +221,7 @@ typedef struct ax_held_figure {
     double residual;   // largest distance of a hinge from what holds it, document units; fairness: third differences
     int hinge;         // whose that is
     double multiplier; // largest |u| over L: far above 1 tells of a conflict
+    bool supports;     // under the load too, which the others only shape it for
 } ax_held_figure;
 
 typedef struct ax_form_report {

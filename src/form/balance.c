@@ -25,9 +25,11 @@ static bool hold(ax_hold* holds, int h, ax_hold with)
 // may slide.
 static bool list_supports(const ax_form* f, ax_hold* holds, double (*places)[3])
 {
-    bool known = ax_form_shares(f); // else rims slide under the load, in their order
+    bool known = true;
     for (int k = 0; k < f->rim_count; ++k) {
         const ax_rim_part* part = f->rim + k;
+        known =
+            known && (part->kind != AX_RIM_SLIDE || ax_form_shares(f)); // else it slides under the load, in its order
         for (int i = 0; i < part->count && part->kind != AX_RIM_FREE; ++i) {
             int h = part->hinges[i];
             known = hold(holds, h, (ax_hold){.kind = AX_HOLD_FIXED}) && known;
@@ -150,6 +152,8 @@ bool ax_form_balance(ax_form* f, double load, const ax_progress* progress, bool*
         for (int t = 0; t < linkage->triangle_count; ++t)
             corners_of_edges(f, t, edges[t], panel[t]);
         ax_solver_set_multipliers(f->hang, multipliers);
+        if (!ax_form_shares(f))
+            memcpy(f->deployed, f->simulated, (size_t)n * sizeof *f->deployed);
     }
     ax_free(edges);
     ax_free(multipliers);

@@ -233,6 +233,36 @@ static void list_wide(ax_form* f)
     ax_free(direction);
 }
 
+// Keeps the rows of `each` hinges that no uneven panel has; returns how many.
+static int keep_even(int count, int each, int* rows, const unsigned char* uneven)
+{
+    int kept = 0;
+    for (int k = 0; k < count; ++k) {
+        bool even = true;
+        for (int i = 0; i < each; ++i)
+            even = even && !uneven[rows[each * k + i]];
+        if (even)
+            memmove(rows + each * kept++, rows + each * k, (size_t)each * sizeof *rows);
+    }
+    return kept;
+}
+
+void ax_form_spare_uneven(ax_form* f)
+{
+    static const double even_enough = 0.1;
+    const ax_linkage* linkage = &f->lattice.linkage;
+    unsigned char* uneven = AX_NEW0(unsigned char, linkage->hinge_count);
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        for (int k = 0; k < 3; ++k)
+            if (fabs(f->stretch[t][k] - 1) > even_enough)
+                for (int i = 0; i < 3; ++i)
+                    uneven[linkage->triangles[t][i]] = 1;
+    f->line_count = keep_even(f->line_count, 4, (int*)f->lines, uneven);
+    f->bend_count = keep_even(f->bend_count, 3, (int*)f->bends, uneven);
+    f->wide_count = keep_even(f->wide_count, 4, (int*)f->wide, uneven);
+    ax_free(uneven);
+}
+
 ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
 {
     ax_form* f = AX_NEW0(ax_form, 1);
@@ -242,7 +272,7 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
     const ax_linkage* linkage = &f->lattice.linkage;
     size_t n = (size_t)linkage->hinge_count, t = (size_t)linkage->triangle_count;
     f->prescribed = AX_NEW(double, t);
-    f->stretch = AX_NEW(double, t);
+    f->stretch = ax_alloc(t, sizeof *f->stretch);
     f->centres = ax_alloc(t, sizeof *f->centres);
     f->flat = ax_alloc(n, sizeof *f->flat);
     f->deployed = ax_alloc(n, sizeof *f->deployed);
@@ -255,14 +285,14 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
     f->lanes = AX_NEW(double, 3 * t + 6 * (size_t)linkage->hole_count);
     for (size_t k = 0; k < t; ++k) {
         const int* h = linkage->triangles[k];
-        f->prescribed[k] = f->stretch[k] = 1;
+        f->prescribed[k] = 1;
         for (int c = 0; c < 2; ++c) {
             f->centres[k][c] =
                 (f->lattice.hinges[h[0]][c] + f->lattice.hinges[h[1]][c] + f->lattice.hinges[h[2]][c]) / 3;
             f->centre[c] += f->centres[k][c] / (double)t;
         }
         for (int c = 0; c < 3; ++c)
-            f->side[k][c] = 0.5 * f->lattice.spacing;
+            f->side[k][c] = 0.5 * f->lattice.spacing, f->stretch[k][c] = 1;
     }
     for (size_t k = 0; k < t; ++k)
         f->radius = fmax(f->radius, ax_distance2(f->centres[k], f->centre));
@@ -416,15 +446,14 @@ ax_status ax_form_from_design(const ax_design* design, ax_form** out, ax_error* 
     f->mouth_min = design->mouth_min * AX_PI / 180;
     f->released = design->border == AX_BORDER_RELEASED;
     for (int t = 0; t < from->triangle_count; ++t) {
-        double mean = 0;
+        const int* h = from->triangles[t];
+        f->prescribed[t] = ax_clamp(design->scale[t], 1, 2);
         for (int k = 0; k < 3; ++k) {
-            const int* h = from->triangles[t];
             f->side[t][k] = ax_distance2(f->flat[h[(k + 1) % 3]], f->flat[h[(k + 2) % 3]]);
-            mean += f->side[t][k] / 3;
+            f->stretch[t][k] = 2 * f->side[t][k] / (f->prescribed[t] * f->lattice.spacing);
         }
-        f->prescribed[t] = ax_clamp(2 * mean / f->lattice.spacing, 1, 2);
-        f->stretch[t] = design->scale[t] / f->prescribed[t];
     }
+    ax_form_spare_uneven(f);
     // the rim stays where it is
     int* rim = AX_NEW(int, n);
     double(*places)[3] = ax_alloc(n, sizeof *places);

@@ -54,7 +54,7 @@ void ax_form_measure_sides(ax_form* f)
             int a = linkage->triangles[t][(k + 1) % 3], b = linkage->triangles[t][(k + 2) % 3];
             f->side[t][k] =
                 shares ? 0.5 * (ax_distance2(f->flat[a], f->flat[b]) + ax_distance3(f->deployed[a], f->deployed[b]))
-                       : ax_form_side(f, t);
+                       : ax_form_edge(f, t, k);
         }
 }
 
@@ -65,7 +65,7 @@ static void size_panels(ax_form* f)
     int lanes = shares ? 1 : 3,
         first = shares ? ax_form_lane("shared_panel", "side") : ax_form_lane("flat_triangle", "lengths");
     for (int k = 0; k < lanes * f->lattice.linkage.triangle_count; ++k)
-        f->lanes[k] = ax_form_side(f, k / lanes);
+        f->lanes[k] = shares ? ax_form_side(f, k) : ax_form_edge(f, k / 3, k % 3);
     ax_solver_set_all(f->shape, f->shape_groups.panels, first, lanes, f->lanes);
 }
 

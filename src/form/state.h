@@ -45,8 +45,8 @@ struct ax_form {
 
     // asked
     double* prescribed;
-    double*
-        stretch; // per panel: what its flat surroundings show of a factor 1; other than 1 in sheets of designs, which are uneven
+    // Edge k of each panel over lambda spacing / 2: 1 but in sheets of designs, which are uneven, at the rim above all.
+    double (*stretch)[3];
     double mouth_min; // radians
     bool released;
     ax_form_dynamics dynamics;
@@ -105,10 +105,14 @@ static inline double ax_form_fineness(const ax_form* f)
     return f->lattice.linkage.triangle_count / 600.0;
 }
 
-// Edge of a panel as prescribed.
+// Edge k of a panel as prescribed, and the mean of the three.
+static inline double ax_form_edge(const ax_form* f, int triangle, int k)
+{
+    return 0.5 * f->prescribed[triangle] * f->stretch[triangle][k] * f->lattice.spacing;
+}
 static inline double ax_form_side(const ax_form* f, int triangle)
 {
-    return 0.5 * f->prescribed[triangle] * f->lattice.spacing;
+    return (ax_form_edge(f, triangle, 0) + ax_form_edge(f, triangle, 1) + ax_form_edge(f, triangle, 2)) / 3;
 }
 
 enum { AX_FORM_LEAST = 12, AX_FORM_MOST = 2000000 }; // panels
@@ -118,6 +122,10 @@ ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error*
 
 // Everything but the linkage, allocated for it and derived from it; states at the sheet.
 ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit);
+
+// Drops the rows of fairness on panels of other sizes than their factors tell, as `stretch` has them: such a row takes hinges to be evenly
+// spaced, and would bend what is straight.
+void ax_form_spare_uneven(ax_form* form);
 
 // Something asked has changed: solvers that no longer fit go; `forget` their multipliers too.
 void ax_form_changed(ax_form* form, bool rebuild, bool forget);

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-static const char magic[8] = "axform05";
+static const char magic[8] = "axform06";
 enum { MOST = 100000000 }; // entries of any one array
 
 typedef struct stream {
@@ -325,6 +325,7 @@ ax_status ax_form_load(const void* bytes, size_t size, ax_form** out, ax_error* 
     }
     ax_form* f = ax_form_over(&sheet, unit);
     body(&s, f);
+    ax_form_spare_uneven(f);
     uint64_t length = 0;
     FIELD(&s, length);
     f->pending = array(&s, NULL, length, sizeof *f->pending);
