@@ -327,6 +327,34 @@ static void a_loaded_form_deploys_in_time(void** state)
     ax_form_free(form);
 }
 
+// It rises iteration by iteration, whichever state opens, and comes to where it was.
+static void a_form_opens_again_slowly(void** state)
+{
+    (void)state;
+    for (int loaded = 0; loaded < 2; ++loaded) {
+        ax_form* form = disk(600, 1.2);
+        paint(form, sphere);
+        slide_on_circle(form, 1.1);
+        set_dynamics(form, loaded ? AX_DYNAMICS_INFLATION : AX_DYNAMICS_EXPAND, 3);
+        settle(form);
+        ax_form_view view = ax_form_look(form);
+        int n = view.linkage->hinge_count;
+        double whole = height_of(n, loaded ? view.simulated : view.deployed), last;
+        ax_form_reopen(form, 0.02);
+        view = ax_form_look(form);
+        last = height_of(n, loaded ? view.simulated : view.deployed);
+        assert_at_most(last, 0.2 * whole);
+        for (int k = 0; k < 400; ++k) {
+            ax_form_iterate(form, 1);
+            double height = height_of(n, loaded ? ax_form_look(form).simulated : ax_form_look(form).deployed);
+            assert_at_most(fabs(height - last), 0.1 * whole);
+            last = height;
+        }
+        assert_near(last, whole, 0.01 * whole); // in a round rim it may have turned
+        ax_form_free(form);
+    }
+}
+
 static void constraints_hold(void** state)
 {
     (void)state;
@@ -622,6 +650,7 @@ int main(void)
         cmocka_unit_test(stored_forms_go_on_with_the_same_bits),
         cmocka_unit_test(a_cancelled_settle_changes_nothing),
         cmocka_unit_test(a_loaded_form_deploys_in_time),
+        cmocka_unit_test(a_form_opens_again_slowly),
         cmocka_unit_test(a_loaded_form_rests),
         cmocka_unit_test(a_form_on_a_plane_alone_settles),
         cmocka_unit_test(constraints_hold),

@@ -155,6 +155,10 @@ const double (*ax_form_motion_to(ax_form_motion* motion, double t, const ax_prog
 
 // Start of the deployed states: `height` out of plane (over the sheet's radius), a bowl or dome; forgets multipliers.
 void ax_form_restart(ax_form* form, double height);
+// Lays the state that opens last (the loaded one, else the deployed one) flat where it stands, tied to what holds it and bulged by `height`
+// towards where it was: `ax_form_iterate` then opens it slowly, by a proximal term, in about a hundred iterations, before it goes on as
+// always. For watching: panels are not quite rigid on the way.
+void ax_form_reopen(ax_form* form, double height);
 
 // Prescribes scale factors with which the sheet hangs from its rim like a film, evenly pulled and with every hole open: its lowest point
 // `depth` below the film that the rim alone would span (negative: above it). Keeps the dynamics; without any, the form expands.

@@ -176,6 +176,8 @@ void ax_form_iterate(ax_form* f, int iterations)
     else
         ax_form_measure_sides(f);
     f->iterations += iterations;
+    if (f->drag > 0)
+        ax_form_dragged(f, iterations);
     f->exact = f->settled = false;
     ++f->revision;
 }

@@ -145,6 +145,7 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     ax_status held = ax_form_hangs(f) ? ax_form_check_support(f, error) : AX_OK;
     if (held != AX_OK)
         return held;
+    ax_form_end_drag(f);
     snapshot before = keep(f);
     ax_form_build(f);
     // The flat state starts from the twist of its factors, so that it does not depend on the way here; the deployed one starts

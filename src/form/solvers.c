@@ -15,7 +15,7 @@
 static const double hole_weight = 0.1, fair_weight = 0.1, held_fair_weight = 0.02, hang_fair_weight = 0.005,
                     bend_weight = 0.01, held_bend_weight = 0.002, hang_bend_weight = 0.003, wide_weight = 0.01,
                     hang_wide_weight = 0.005, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
-                    proximal = 1e-5, load_strain = 0.1, multiplier_cap = 2;
+                    load_strain = 0.1, multiplier_cap = 2;
 static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
 
 void ax_form_drop_solvers(ax_form* f)
@@ -405,10 +405,12 @@ void ax_form_build(ax_form* f)
     ax_solver* solvers[] = {f->shape, f->hang};
     for (int k = 0; k < 2; ++k)
         if (solvers[k]) {
-            ax_solver_set_proximal(solvers[k], proximal); // nothing flies off that no row holds
+            ax_solver_set_proximal(solvers[k], AX_FORM_PROXIMAL);
             ax_solver_use_multipliers(solvers[k], true);
             ax_solver_cap_multipliers(solvers[k], multiplier_cap * f->lattice.spacing);
         }
+    if (f->drag > 0)
+        ax_form_drag_solvers(f);
     size_t first = ax_solver_multiplier_count(f->shape), second = f->hang ? ax_solver_multiplier_count(f->hang) : 0;
     if (f->pending && f->pending_count == first + second) {
         ax_solver_set_multipliers(f->shape, f->pending);

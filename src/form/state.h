@@ -69,6 +69,8 @@ struct ax_form {
     unsigned revision;
     int iterations;
     double scaled_step; // largest move of the last iteration over the spacing
+    double drag;        // proximal stiffness while it opens to be watched, 0: it does not
+    int dragged;        // iterations since
 
     // solvers, made when needed
     ax_pool* pool;
@@ -114,6 +116,9 @@ static inline double ax_form_side(const ax_form* f, int triangle)
 {
     return (ax_form_edge(f, triangle, 0) + ax_form_edge(f, triangle, 1) + ax_form_edge(f, triangle, 2)) / 3;
 }
+
+// Stiffness, panels at 1, with which solvers always draw hinges to where they are: nothing flies off that no row holds.
+#define AX_FORM_PROXIMAL 1e-5
 
 enum { AX_FORM_LEAST = 12, AX_FORM_MOST = 2000000 }; // panels
 
@@ -163,6 +168,10 @@ void ax_form_iterate_shape(ax_form* form, int iterations);
 void ax_form_iterate_hang(ax_form* form, int iterations);
 // Sizes of the panels as both states have them now, or as prescribed: what the loaded state keeps.
 void ax_form_measure_sides(ax_form* form);
+// Puts the drag into the solvers; counts iterations under it and ends it when the form has opened; ends it.
+void ax_form_drag_solvers(ax_form* form);
+void ax_form_dragged(ax_form* form, int iterations);
+void ax_form_end_drag(ax_form* form);
 // The flat state twisted analytically to the prescribed factors.
 void ax_form_twist(ax_form* form);
 // Multipliers of both solvers, counted in *count; owned by the caller. NULL if there are none.

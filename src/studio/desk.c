@@ -18,6 +18,7 @@ enum { ITERATIONS = 10 };
 static const double patience = 0.02, reaction = 0.005;
 static const double quick_report = 0.01; // a longer one waits until the hand rests
 static const double frame_seconds = 1.0 / 60, rest_seconds = 1.0 / 15, report_seconds = 0.5, progress_seconds = 0.25;
+static const double eye_move = 0.002; // of twice the sheet's size per update: what moves by itself is to be seen moving
 static const double rest_move = 1e-4; // of the sheet's spacing per update: nothing a screen shows moves any more
 enum { REST_UPDATES = 3 };
 
@@ -492,6 +493,7 @@ static void start_moving(desk* d)
     bool begins = !d->moving;
     d->moving = true;
     d->still = 0;
+    d->swift = !d->previewing && !d->holding;
     d->move_start = ax_seconds();
     d->rested = false;
     if (begins)
@@ -507,16 +509,38 @@ static bool outdated(desk* d)
     return is;
 }
 
+// Largest distance of a hinge in space from where it was published last, over the spacing.
+static double moved(const desk* d, const ax_form_view* v)
+{
+    const double(*space)[3] = v->simulated ? v->simulated : v->deployed;
+    double move = 0;
+    for (int h = 0; h < d->last_count; ++h)
+        move = fmax(move, ax_distance3(space[h], d->last_places[h]));
+    return move / v->spacing;
+}
+
+static bool seen_moving(const desk* d)
+{
+    ax_form_view v = ax_form_look(d->live);
+    return !d->previewing && !d->holding && d->last_count == v.linkage->hinge_count &&
+           moved(d, &v) > eye_move * sqrt(v.linkage->triangle_count);
+}
+
 // Iterates for about so many seconds, and shows what came of it. `first`: what the hand did last is shown even if it has moved on.
 static void advance(desk* d, double seconds, bool first)
 {
     double start = ax_seconds();
-    bool left = false;
-    for (int done = 0, count; done < ITERATIONS && !left && (!done || ax_seconds() - start < seconds); done += count) {
-        count = d->iteration_time > 0 ? (int)ax_clamp(reaction / d->iteration_time, 1, ITERATIONS - done) : 1;
+    bool left = false, seen = false;
+    for (int done = 0, count; done < ITERATIONS && !left && !seen && (!done || ax_seconds() - start < seconds);
+         done += count) {
+        count = d->swift                ? 1
+                : d->iteration_time > 0 ? (int)ax_clamp(reaction / d->iteration_time, 1, ITERATIONS - done)
+                                        : 1;
         iterate(d, count);
         left = !first && outdated(d);
+        seen = seen_moving(d);
     }
+    d->swift = seen;
     d->update_time = ax_seconds() - start;
     if (left)
         return;
@@ -636,7 +660,7 @@ void desk_restart(desk* d, double height)
 {
     if (!begin_live(d))
         return;
-    ax_form_restart(d->live, height);
+    ax_form_reopen(d->live, height);
     use_live(d);
     d->moving = false;
 }

@@ -63,7 +63,8 @@ struct desk {
     bool live_fresh, live_shown, previewing, holding, moving, busy, rested, ready, was_exact;
     unsigned hand_serial;
     int hand_of_serial;
-    int still; // updates in which nothing moved
+    int still;  // updates in which nothing moved
+    bool swift; // what moves by itself is to be seen moving: one iteration at a time
     shape_frame frame;
     double (*last_places)[3], (*last_flat)[2]; // as published last
     int last_count;

@@ -4,6 +4,7 @@
 
 #include "base/vec.h"
 
+#include <math.h>
 #include <string.h>
 
 static ax_status play(desk* d, const job* j, json_t** result, ax_error* error)
@@ -28,7 +29,7 @@ static ax_status step(desk* d, const job* j, json_t** result, ax_error* error)
 static ax_status restart(desk* d, const job* j, json_t** result, ax_error* error)
 {
     (void)result;
-    double height = 0.1;
+    double height = 0.05;
     ax_status status = message_unpack(&j->message, error, "{s?F}", "height", &height);
     if (status == AX_OK && !(height >= -2 && height <= 2))
         status = ax_fail(error, AX_USAGE, "restart: \"height\" is -2 to 2, over the sheet's radius.");
@@ -75,89 +76,57 @@ static ax_status move_under_load(desk* d, const job* j, ax_form_motion* m, int h
     return AX_OK;
 }
 
-// States that the solver went through, thinned so that there are at most twice as many as wanted.
-typedef struct track {
-    int hinges, wanted, count, stride, updates;
-    double (**places)[3];
-    double* way; // travelled until then, mean over the hinges
-    double travelled, (*last)[3];
-} track;
-
-static void track_keep(track* t, const double (*places)[3])
+static double mean_distance(int hinges, const double (*a)[3], const double (*b)[3])
 {
-    double moved = 0;
-    for (int h = 0; t->updates && h < t->hinges; ++h)
-        moved += ax_distance3(places[h], t->last[h]) / t->hinges;
-    t->travelled += moved;
-    memcpy(t->last, places, (size_t)t->hinges * sizeof *places);
-    if (t->updates++ % t->stride)
-        return;
-    if (t->count == 2 * t->wanted) { // every other one goes
-        for (int k = 0; k < t->count; ++k)
-            if (k % 2)
-                ax_free(t->places[k]);
-            else
-                t->places[k / 2] = t->places[k], t->way[k / 2] = t->way[k];
-        t->count /= 2;
-        t->stride *= 2;
-        if ((t->updates - 1) % t->stride)
-            return;
-    }
-    t->way[t->count] = t->travelled;
-    t->places[t->count++] = ax_copy(places, (size_t)t->hinges, sizeof *places);
+    double sum = 0;
+    for (int h = 0; h < hinges; ++h)
+        sum += ax_distance3(a[h], b[h]);
+    return sum / hinges;
 }
 
-enum { MOTION_UPDATES = 2000 };
+enum { MOTION_UPDATES = 2000, FIRST_UPDATES = 30 };
 static const double motion_rest = 1e-4; // of the spacing, mean move per iteration
 
-// Without load: the solver's way from the flat sheet to rest.
-static ax_status run_free(desk* d, ax_form* form, track* t, ax_error* error)
+// Without load: the solver's way from the flat sheet to rest. A state is sent where it has come one frame nearer to the document's own, the
+// last one at rest.
+static ax_status open_free(desk* d, const job* j, ax_form* form, const double (*rest)[3], int hinges, int wanted,
+                           int* frames, ax_error* error)
 {
     const ax_progress progress = desk_progress(d);
-    ax_form_restart(form, 0.02);
-    for (int k = 0; k < MOTION_UPDATES; ++k) {
-        ax_form_view v = ax_form_look(form);
-        double before = t->travelled;
-        track_keep(t, v.deployed);
-        double move = (t->travelled - before) / v.spacing;
-        if (k > 10 && move < motion_rest)
-            break;
-        if (!ax_progress_report(&progress, "Deploying from flat", (double)k / MOTION_UPDATES, move))
-            return ax_fail(error, AX_CANCELLED, "Cancelled.");
+    ax_form_reopen(form, 0.01);
+    ax_form_view v = ax_form_look(form);
+    double(*last)[3] = ax_copy(v.deployed, (size_t)hinges, sizeof *last);
+    double whole = mean_distance(hinges, v.deployed, rest), shown = 0;
+    bool going = send_motion(d, j, 0, wanted, 0, hinges, v.deployed), still = false;
+    *frames = 1;
+    for (int k = 0; going && !still && k < MOTION_UPDATES; ++k) {
         ax_form_iterate(form, 1);
+        v = ax_form_look(form);
+        double move = mean_distance(hinges, v.deployed, last) / v.spacing;
+        memcpy(last, v.deployed, (size_t)hinges * sizeof *last);
+        still = k > FIRST_UPDATES && move < motion_rest;
+        double share = fmin(1, 1 - mean_distance(hinges, v.deployed, rest) / whole);
+        if (share - shown > 1.0 / (wanted - 1) && *frames < wanted - 1) {
+            shown = share;
+            going = send_motion(d, j, (*frames)++, wanted, share, hinges, v.deployed);
+        }
+        going = going && ax_progress_report(&progress, "Deploying from flat", shown, move);
     }
-    return AX_OK;
+    if (going)
+        going = send_motion(d, j, (*frames)++, wanted, 1, hinges, (const double(*)[3])last);
+    ax_free(last);
+    return going ? AX_OK : ax_fail(error, AX_CANCELLED, "Cancelled.");
 }
 
-// Frames are sent when the whole way is known: they are spread over it.
 static ax_status move_free(desk* d, const job* j, int hinges, int wanted, int* frames, ax_error* error)
 {
     size_t size;
-    ax_form* form = NULL;
-    void* bytes = ax_form_save(ax_session_form(d->session), &size);
+    ax_form *own = ax_session_form(d->session), *form = NULL;
+    void* bytes = ax_form_save(own, &size);
     ax_status status = ax_form_load(bytes, size, &form, error);
     ax_free(bytes);
-    if (status != AX_OK)
-        return status;
-    track t = {.hinges = hinges,
-               .wanted = wanted,
-               .stride = 1,
-               .places = ax_calloc(2 * (size_t)wanted, sizeof *t.places),
-               .way = AX_NEW0(double, 2 * wanted),
-               .last = ax_calloc((size_t)hinges, sizeof *t.last)};
-    status = run_free(d, form, &t, error);
-    *frames = t.count < wanted ? t.count : wanted;
-    for (int i = 0; status == AX_OK && i < *frames; ++i) {
-        int k = *frames > 1 ? (int)((double)i * (t.count - 1) / (*frames - 1) + 0.5) : 0;
-        double share = t.travelled > 0 ? t.way[k] / t.travelled : 1;
-        if (!send_motion(d, j, i, *frames, share, hinges, (const double(*)[3])t.places[k]))
-            status = ax_fail(error, AX_CANCELLED, "Cancelled.");
-    }
-    for (int k = 0; k < t.count; ++k)
-        ax_free(t.places[k]);
-    ax_free(t.places);
-    ax_free(t.way);
-    ax_free(t.last);
+    if (status == AX_OK)
+        status = open_free(d, j, form, ax_form_look(own).deployed, hinges, wanted, frames, error);
     ax_form_free(form);
     return status;
 }

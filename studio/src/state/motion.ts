@@ -77,10 +77,10 @@ export async function playMotion(): Promise<void> {
     let k = from < motion.value.frames.length - 1 ? from : 0;
     clearInterval(timer);
     timer = setInterval(() => {
-        const { frames, total, computing, playing } = motion.value;
+        const { frames, computing, playing } = motion.value;
         if (!playing) clearInterval(timer);
         else if (frames[k]) change({ shown: k++ });
-        else if (!computing && k >= total) {
+        else if (!computing && k >= frames.length) {
             stopMotion();
             change({ shown: null });
         }

@@ -303,7 +303,7 @@ function DynamicsPanel() {
                 <Button small icon={running ? "pause" : "play"} onClick={() => void command(running ? "pause" : "play")}>{running ? "Pause" : "Run"}</Button>
                 <Button small icon="step" onClick={() => void command("step", { iterations: 1 })}>Step</Button>
                 <Button small icon="settle" onClick={() => void command("settle")}>Settle</Button>
-                <Button small icon="restart" onClick={() => void command("restart")} title="Back to a flat bowl; run shows how it rises">From flat</Button>
+                <Button small icon="restart" onClick={() => void command("restart")} title="Lays it flat; Run then opens it, slowly enough to be watched">From flat</Button>
             </div>
             <p class="small muted" style={{ margin: "8px 0" }}>Drag a hinge on the deployed view: the shell follows while the solver runs.</p>
             {schema && (
