@@ -15,7 +15,7 @@
 
 // A visual update, unless the hand would wait for it longer than `patience`; after what the hand did, than `reaction`.
 enum { ITERATIONS = 10 };
-static const double patience = 0.02, reaction = 0.005;
+static const double patience = 0.02, reaction = 0.004;
 static const double quick_report = 0.01; // a longer one waits until the hand rests
 static const double frame_seconds = 1.0 / 60, rest_seconds = 1.0 / 15, report_seconds = 0.5, progress_seconds = 0.25;
 static const double eye_move = 0.002; // of twice the sheet's size per update: what moves by itself is to be seen moving

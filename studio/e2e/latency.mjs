@@ -6,7 +6,8 @@
 // Its time is that of one and the same run, as the browser's own trace has it.
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { Hand, Studio, launch } from "./studio.mjs";
+import { Browser } from "./alone.mjs";
+import { Studio } from "./studio.mjs";
 
 const movements = 150;
 const parts = [
@@ -26,42 +27,34 @@ const parts = [
 
 const quantile = (values, q) => values.slice().sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(q * values.length))];
 
-/** What a hand does for some seconds, 60 places a second: circles over the middle of the flat view. It does not wait for the page. */
-async function paint(hand) {
-    const { page } = hand;
-    const session = await page.context().newCDPSession(page); // a driver that takes little from what it measures
-    const box = [await hand.flat(0.5, 0.48), await hand.flat(0.66, 0.64)];
-    const mouse = (type, k) => session.send("Input.dispatchMouseEvent", {
+/** What a hand does for some seconds, 60 places a second: circles over the middle of the flat view. It does not wait for the page. It comes
+ *  there first; then `begins` is called. */
+async function paint(browser, begins) {
+    const box = await browser.value(`(() => {
+        const { canvas, views: { flat: { rect } } } = auxshell.stage.value;
+        const { left, top } = canvas.getBoundingClientRect();
+        return [[0.5, 0.48], [0.66, 0.64]].map(([u, v]) => [left + rect.x + u * rect.width, top + rect.y + v * rect.height]);
+    })()`);
+    const mouse = (type, k, buttons = 1) => browser.send("Input.dispatchMouseEvent", {
         type, x: box[0][0] + (box[1][0] - box[0][0]) * Math.cos(k / 14), y: box[0][1] + (box[1][1] - box[0][1]) * Math.sin(k / 9),
-        button: "left", buttons: 1, clickCount: type === "mouseMoved" ? 0 : 1,
+        button: buttons ? "left" : "none", buttons, clickCount: type === "mouseMoved" ? 0 : 1,
     });
+    const move = async (from, to, buttons) => {
+        const began = performance.now();
+        const moves = [];
+        for (let k = from; k <= to; k++) {
+            await new Promise((resolve) => setTimeout(resolve, began + ((k - from + 1) * 1000) / 60 - performance.now()));
+            moves.push(mouse("mouseMoved", k, buttons));
+        }
+        await Promise.all(moves);
+    };
+    await move(-60, 0, 0);
+    await begins();
     await mouse("mousePressed", 0);
-    const began = performance.now();
-    const moves = [];
-    for (let k = 1; k <= movements; k++) {
-        await new Promise((resolve) => setTimeout(resolve, began + (k * 1000) / 60 - performance.now()));
-        moves.push(mouse("mouseMoved", k));
-    }
-    await Promise.all(moves);
-    await page.waitForFunction(() => auxshell.latency.pending() === 0, null, { timeout: 30000 }); // the last ones are shown before the stroke ends
-    await page.waitForTimeout(100);
+    await move(1, movements);
+    await browser.until("auxshell.latency.pending() === 0"); // the last ones are shown before the stroke ends
+    await new Promise((resolve) => setTimeout(resolve, 100));
     await mouse("mouseReleased", movements);
-}
-
-/** Does something and returns what the browser traced meanwhile. */
-async function traced(browser, action) {
-    const session = await browser.newBrowserCDPSession();
-    const events = [];
-    session.on("Tracing.dataCollected", ({ value }) => events.push(...value));
-    await session.send("Tracing.start", {
-        transferMode: "ReportEvents", traceConfig: { includedCategories: ["devtools.timeline", "viz", "gpu", "blink.user_timing", "blink"], excludedCategories: ["*"] },
-    });
-    await action();
-    const complete = new Promise((resolve) => session.once("Tracing.tracingComplete", resolve));
-    await session.send("Tracing.end");
-    await complete;
-    await session.detach();
-    return events;
 }
 
 /** Length of a union of intervals within [from, to]. */
@@ -96,16 +89,17 @@ function complete(samples, events, origin) {
     const drawings = times((e) => e.ph === "X" && e.name === "Display::DrawAndSwap");
     const next = (list, after) => list.find(([from]) => from >= after) ?? [NaN, NaN];
     const shown = (submitted) => next(drawings, next(handed, next(pushed, submitted)[0])[0])[1];
+    software.push(...samples.map((s) => [s.began, s.submitted]));
     for (const s of samples) {
         // a frame that changed nothing says so at once; the picture is then in the next one that was presented
         const frame = [...frames.values()].filter((f) => f.to >= s.submitted && f.presented >= s.submitted).sort((a, b) => a.from - b.from)[0];
         s.presented = s.apart ? shown(s.submitted) : (frame?.presented ?? NaN);
-        s.software = covered([...software, [s.began, s.submitted]], s.began, s.presented);
+        s.software = covered(software, s.began, s.presented);
     }
     return samples.filter((s) => Number.isFinite(s.presented));
 }
 
-async function measure(browser, panels) {
+async function measure(panels) {
     const studio = new Studio();
     writeFileSync(join(studio.folder, "shell.json"), JSON.stringify({
         format: "auxshell-recipe", version: 1, operators: [
@@ -113,30 +107,27 @@ async function measure(browser, panels) {
             { op: "rim_circle", radius: 5.5 }, { op: "inflation" }],
     }));
     await studio.start("shell.json");
+    const browser = new Browser(new URL("./chromium.sh", import.meta.url).pathname);
     try {
-        const hand = await Hand.open(browser, studio.address, { viewport: { width: 1440, height: 900 }, refines: true });
-        await hand.key("b");
-        await hand.page.waitForFunction(() => auxshell.stage.value.atRest, null, { timeout: 60000 });
-        await hand.page.waitForTimeout(1500); // and a moment more, as a hand does
-        await hand.page.evaluate(() => (auxshell.latency.samples.length = 0));
+        await browser.open(studio.address, 1440, 900);
+        await browser.until('typeof auxshell === "object" && auxshell.shell() !== null && auxshell.session.status.value?.solver === "idle"');
+        await browser.key("b");
+        await browser.until("auxshell.stage.value.atRest");
+        await new Promise((resolve) => setTimeout(resolve, 1500)); // and a moment more, as a hand does
         let origin = 0;
-        const events = await traced(browser, async () => {
-            origin = await hand.page.evaluate(() => performance.mark("origin").startTime);
-            await paint(hand);
-        });
-        const found = await hand.page.evaluate(() => ({ samples: auxshell.latency.samples, panels: auxshell.shell().linkage.panels, renderer: auxshell.stage.value.rendererName }));
-        await hand.rest();
-        await hand.page.context().close();
+        const begins = async () => (origin = await browser.value('(auxshell.latency.samples.length = 0, performance.mark("origin").startTime)'));
+        const events = await browser.traced(["devtools.timeline", "viz", "gpu", "blink.user_timing", "blink"], () => paint(browser, begins));
+        const found = await browser.value("({ samples: auxshell.latency.samples, panels: auxshell.shell().linkage.panels, renderer: auxshell.stage.value.rendererName })");
         return { ...found, samples: complete(found.samples, events, origin), all: found.samples.length };
     } finally {
+        await browser.close();
         await studio.remove();
     }
 }
 
-const browser = await launch(new URL("./chromium.sh", import.meta.url).pathname);
 const sizes = process.argv.slice(2).map(Number);
 for (const panels of sizes.length ? sizes : [2000, 10000]) {
-    const { samples, all, panels: count, renderer } = await measure(browser, panels);
+    const { samples, all, panels: count, renderer } = await measure(panels);
     const pictures = new Set(samples.map((s) => s.presented)).size;
     const apart = samples.filter((s) => s.apart).length;
     console.log(`\n${count} panels, ${renderer}: ${samples.length} of ${all} movements in ${pictures} pictures, ${(pictures / (movements / 60)).toFixed(0)} a second; ${apart} by the worker`);
@@ -146,4 +137,3 @@ for (const panels of sizes.length ? sizes : [2000, 10000]) {
         console.log(`${name.padEnd(32)}${[0.5, 0.95, 1].map((q) => quantile(values, q).toFixed(1).padStart(9)).join("")}`);
     }
 }
-await browser.close();

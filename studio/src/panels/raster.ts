@@ -3,12 +3,19 @@
 import { panelNormals } from "./measures";
 import { type Lights, shadePanel } from "./shade";
 
+/** Columns and rows: from, and up to. */
+export type Box = [left: number, top: number, right: number, bottom: number];
+
 /** RGBA bytes as numbers of 32 bits (little-endian), and depths, nearer is less; rows from the top down. */
 export interface Picture {
     width: number;
     height: number;
     pixels: Uint32Array;
     depth: Float32Array;
+    /** What panels are drawn over; where there is none, over nothing. */
+    ground: Uint32Array | null;
+    /** Where it differs from its ground, for every window that was drawn in. */
+    drawn: Box[];
 }
 
 /** Part of a picture in pixels, and the matrix (4 x 4, column by column) from places to -1..1 across it. */
@@ -28,12 +35,21 @@ export interface Inks {
     hatch: number;
 }
 
-export const makePicture = (width: number, height: number): Picture =>
-    ({ width, height, pixels: new Uint32Array(width * height), depth: new Float32Array(width * height) });
+export const makePicture = (width: number, height: number, ground: Uint32Array | null = null): Picture => ({
+    width, height, ground, pixels: ground?.slice() ?? new Uint32Array(width * height), depth: new Float32Array(width * height).fill(Infinity), drawn: [],
+});
 
+/** Takes panels off again. */
 export function clear(picture: Picture): void {
-    picture.pixels.fill(0);
-    picture.depth.fill(Infinity);
+    const { width, pixels, depth, ground } = picture;
+    for (const [left, top, right, bottom] of picture.drawn)
+        for (let y = top; y < bottom; y++) {
+            const [from, to] = [y * width + left, y * width + right];
+            if (ground) pixels.set(ground.subarray(from, to), from);
+            else pixels.fill(0, from, to);
+            depth.fill(Infinity, from, to);
+        }
+    picture.drawn = [];
 }
 
 /** Share s of b, the rest of a; 0xBBGGRR. */
@@ -76,6 +92,7 @@ export function drawPanels(picture: Picture, window: Window, places: Float32Arra
     const left = Math.max(0, window.x), top = Math.max(0, window.y);
     const right = Math.min(picture.width, window.x + window.width), bottom = Math.min(picture.height, window.y + window.height);
     const screen = project(places, window);
+    let boxLeft = right, boxTop = bottom, boxRight = left, boxBottom = top;
     for (let t = 0; t < marks.length; t++) {
         const a = 3 * triangles[3 * t];
         let b = 3 * triangles[3 * t + 1], c = 3 * triangles[3 * t + 2];
@@ -91,6 +108,10 @@ export function drawPanels(picture: Picture, window: Window, places: Float32Arra
         const x0 = Math.max(left, Math.floor(Math.min(ax, bx, cx) - 0.5)), x1 = Math.min(right, Math.ceil(Math.max(ax, bx, cx) + 0.5));
         const y0 = Math.max(top, Math.floor(Math.min(ay, by, cy) - 0.5)), y1 = Math.min(bottom, Math.ceil(Math.max(ay, by, cy) + 0.5));
         if (x0 >= x1 || y0 >= y1) continue;
+        if (x0 < boxLeft) boxLeft = x0;
+        if (x1 > boxRight) boxRight = x1;
+        if (y0 < boxTop) boxTop = y0;
+        if (y1 > boxBottom) boxBottom = y1;
         // distances in pixels from the three edges, positive inside: d = u x + v y + w
         const la = inverse(bx - ax, by - ay), lb = inverse(cx - bx, cy - by), lc = inverse(ax - cx, ay - cy);
         const ua = (ay - by) * la, va = (bx - ax) * la, ub = (by - cy) * lb, vb = (cx - bx) * lb, uc = (cy - ay) * lc, vc = (ax - cx) * lc;
@@ -132,6 +153,7 @@ export function drawPanels(picture: Picture, window: Window, places: Float32Arra
             }
         }
     }
+    picture.drawn.push([boxLeft, boxTop, boxRight, boxBottom]);
 }
 
 /** What a state is seen with. */

@@ -1,8 +1,9 @@
-// Panels that move, drawn apart from the page: its own thread has the hand to listen to, and a frame of the page to put together. A
-// state is drawn as soon as it is here, unless the last picture has not left yet; then the newest is, when that has.
+// Panels that move, drawn apart from the page: its own thread has the hand to listen to, and a frame of the page to put together. The
+// newest state is drawn as soon as it is here, over a picture that has not left yet: what is drawn when the browser asks for the next
+// frame comes too late for it.
 import { colourMaps, paint } from "../panels/colour";
 import { fieldById } from "../panels/fields";
-import { type Picture, clear, drawShell, makePicture } from "../panels/raster";
+import { type Box, type Picture, clear, drawShell, makePicture } from "../panels/raster";
 import { Shell } from "../panels/shell";
 import { decodeFrame } from "../protocol/frames";
 import { type Stamp, serverTimes } from "../state/latency";
@@ -12,12 +13,13 @@ let context: OffscreenCanvasRenderingContext2D;
 let states: MessagePort | null = null;
 let shell: Shell | null = null;
 let scene: LiveScene | null = null;
+let ground: { width: number; height: number; pixels: Uint32Array };
 let picture: Picture | null = null;
 let image: ImageData;
 let tints = new Uint8Array(0);
 let normals = new Float32Array(0);
-/** A picture has not left yet. */
-let leaving = false;
+/** Serials of pictures that have not left yet. */
+let leaving: number[] = [];
 let stale = false;
 const practices = 12;
 /** The number of what was begun last, until its first picture is on its way. */
@@ -37,41 +39,47 @@ function note(serial: number, at: Stamp[1]): void {
     }, 200);
 }
 
-function makeRoom({ width, height }: LiveScene, panels: number): Picture {
+function makeRoom(panels: number): Picture {
     if (tints.length !== 4 * panels) [tints, normals] = [new Uint8Array(4 * panels), new Float32Array(3 * panels)];
-    if (picture?.width === width && picture.height === height) return picture;
-    Object.assign(context.canvas, { width, height });
-    picture = makePicture(width, height);
+    const { width, height, pixels } = ground;
+    if (picture?.ground === pixels) return picture;
+    if (context.canvas.width !== width || context.canvas.height !== height) Object.assign(context.canvas, { width, height });
+    picture = makePicture(width, height, pixels);
     image = new ImageData(new Uint8ClampedArray(picture.pixels.buffer as ArrayBuffer), width, height);
+    context.putImageData(image, 0, 0);
     return picture;
 }
 
-function drawInto(shell: Shell, scene: LiveScene): void {
+/** Returns where the picture is another than before. */
+function drawInto(shell: Shell, scene: LiveScene): Box[] {
     const { linkage } = shell;
     const { sights, marks, field, lo, hi, map } = scene;
-    const into = makeRoom(scene, linkage.panels);
+    const into = makeRoom(linkage.panels);
+    const before = into.drawn;
     clear(into);
     paint({ map: colourMaps[map], lo, hi }, fieldById(field).values(shell), tints);
     for (const sight of sights)
         drawShell(into, sight, linkage.triangles, sight.state === "flat" ? shell.flat : shell.simulated ?? shell.deployed, tints, marks, normals);
+    return into.drawn.map((box, k) => (before[k] ? around(box, before[k]) : box)); // window by window
 }
+
+const around = ([a, b, c, d]: Box, [left, top, right, bottom]: Box): Box => [Math.min(a, left), Math.min(b, top), Math.max(c, right), Math.max(d, bottom)];
 
 function draw(): void {
     stale = false;
     if (!shell || !scene) return;
     const began = now();
-    drawInto(shell, scene);
-    context.putImageData(image, 0, 0);
-    const { serial } = shell;
-    note(serial, { began, submitted: now(), apart: true });
-    leaving = true;
+    for (const [left, top, right, bottom] of drawInto(shell, scene)) context.putImageData(image, 0, 0, left, top, right - left, bottom - top);
+    note(shell.serial, { began, submitted: now(), apart: true });
+    leaving.push(shell.serial);
     const begun = first;
     first = 0;
+    if (leaving.length > 1) return;
     requestAnimationFrame(() => {
-        leaving = false;
-        note(serial, { drawn: now() });
+        const drawn = now();
+        for (const serial of leaving) note(serial, { drawn });
+        leaving = [];
         if (begun) postMessage(begun);
-        if (stale) draw();
     });
 }
 
@@ -82,15 +90,20 @@ function practise(model: Shell, of: LiveScene, times: number): void {
     if (times > 1) setTimeout(() => practise(model, of, times - 1), 10);
 }
 
+// behind states that are here already
+const { port1: later, port2: soon } = new MessageChannel();
+later.onmessage = draw;
 function invalidate(): void {
+    if (!stale) soon.postMessage(null);
     stale = true;
-    if (!leaving) draw();
 }
 
 addEventListener("message", ({ data }: MessageEvent<ToLive>) => {
     if ("canvas" in data) {
-        context = data.canvas.getContext("2d", { willReadFrequently: true })!;
+        context = data.canvas.getContext("2d", { willReadFrequently: true, alpha: false })!;
         origin = data.origin;
+    } else if ("ground" in data) {
+        ground = { ...data, pixels: new Uint32Array(data.ground) };
     } else if ("states" in data) {
         states?.close();
         states = data.states;
@@ -116,6 +129,5 @@ addEventListener("message", ({ data }: MessageEvent<ToLive>) => {
     } else {
         states?.close();
         states = shell = scene = null;
-        context.clearRect(0, 0, context.canvas.width, context.canvas.height);
     }
 });

@@ -5,18 +5,17 @@ import type { Stamp } from "../state/latency";
 import type { ColourMap } from "../panels/colour";
 
 export interface LiveScene {
-    /** Pixels. */
-    width: number;
-    height: number;
     sights: (Sight & { state: "flat" | "space" })[];
     marks: Uint8Array;
+    /** Another number whenever what lies under the panels is another picture. */
+    ground: number;
     /** What panels are coloured by, and the scale. */
     field: string;
     lo: number;
     hi: number;
     map: ColourMap["name"];
 }
-export type ToLive = { canvas: OffscreenCanvas; origin: number } | { states: MessagePort } | { shell: Shell; scene: LiveScene; run: number } | { practice: Shell; scene: LiveScene } | { scene: LiveScene | null };
+export type ToLive = { canvas: OffscreenCanvas; origin: number } | { ground: ArrayBuffer; width: number; height: number } | { states: MessagePort } | { shell: Shell; scene: LiveScene; run: number } | { practice: Shell; scene: LiveScene } | { scene: LiveScene | null };
 
 /** Every state goes to the port from when `begun` is called, until null is given; false where that cannot be. */
 export type Watch = (port: MessagePort | null, begun?: () => void) => boolean;
@@ -27,11 +26,12 @@ export class Live {
     private readonly worker: Worker;
     private run: { shell: Shell; number: number; since: number; drawn: boolean; begun: boolean; scene: LiveScene; key: string } | null = null;
     private runs = 0;
+    private ground = 0;
 
     static readonly possible = typeof Worker !== "undefined" && typeof HTMLCanvasElement !== "undefined" && "transferControlToOffscreen" in HTMLCanvasElement.prototype;
 
-    /** `ready` is called when the first picture is there, `stamped` with what was when. */
-    constructor(readonly canvas: HTMLCanvasElement, private readonly watch: Watch, ready: () => void, stamped: (stamps: Stamp[]) => void) {
+    /** `pixels` are those of the ground. `ready` is called when the first picture is there, `stamped` with what was when. */
+    constructor(readonly canvas: HTMLCanvasElement, private readonly watch: Watch, private readonly pixels: () => ImageData, ready: () => void, stamped: (stamps: Stamp[]) => void) {
         this.worker = new Worker(new URL("./live-worker.ts", import.meta.url), { type: "module", name: "live" });
         const offscreen = canvas.transferControlToOffscreen();
         this.tell({ canvas: offscreen, origin: performance.timeOrigin }, [offscreen]);
@@ -48,6 +48,14 @@ export class Live {
         this.worker.postMessage(message, transfer);
     }
 
+    /** What the scene lies on, if that is new there. */
+    prepare({ ground }: LiveScene): void {
+        if (ground === this.ground) return;
+        this.ground = ground;
+        const { data: { buffer }, width, height } = this.pixels();
+        this.tell({ ground: buffer as ArrayBuffer, width, height }, [buffer]);
+    }
+
     /** Its first picture will be there soon. */
     get coming(): boolean {
         return this.run !== null && !this.run.drawn && performance.now() - this.run.since < patience;
@@ -55,21 +63,22 @@ export class Live {
 
     /** Has states drawn so, as they come. True when a picture of them is there. */
     show(shell: Shell, scene: LiveScene): boolean {
+        this.prepare(scene);
         const key = keyOf(scene);
         if (this.run && this.run.shell !== shell) this.stop();
         const { run } = this;
         if (!run) {
             const { port1, port2 } = new MessageChannel();
             const next = { shell, number: ++this.runs, since: performance.now(), drawn: false, begun: false, scene, key };
-            // what came before is in the shell by then
-            const begun = () => {
-                if (this.run !== next) return;
+            const begin = () => {
+                if (this.run !== next || next.begun) return;
                 next.begun = true;
                 this.tell({ shell, scene: next.scene, run: next.number });
             };
-            if (!this.watch(port1, begun)) return false;
+            if (!this.watch(port1, begin)) return false; // what came before is in the shell when that is called
             this.tell({ states: port2 }, [port2]);
             this.run = next;
+            if (!shell.moving) begin(); // nothing is on its way here
             return false;
         }
         if (key === run.key && sameBytes(scene.marks, run.scene.marks)) return run.drawn;
@@ -80,6 +89,7 @@ export class Live {
 
     /** What is not shown is drawn some times: code that has not run yet takes five times as long. */
     practise(shell: Shell, scene: LiveScene): void {
+        this.prepare(scene);
         if (!this.run) this.tell({ practice: shell, scene });
     }
 

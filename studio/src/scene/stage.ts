@@ -44,7 +44,9 @@ export class View {
 
 /** A whole picture may take this long, milliseconds. */
 const wholeLimit = 40;
-const overlayPatience = 50;
+/** While a hand works on a slow renderer the page itself follows at this pace: every frame of it delays the hand, and the states that
+ *  are on their way. */
+const pace = 50;
 /** What must not have changed for this long before a better picture is drawn, and before the whole one. */
 const rests = [250, 1500];
 
@@ -56,7 +58,7 @@ type QuickPicture = Picture & { image: ImageData; context: CanvasRenderingContex
 /** One over the other and equally large. */
 export interface Canvases {
     canvas: HTMLCanvasElement;
-    /** A copy of what the renderer draws under quick panels. */
+    /** A copy of what lies under quick panels. */
     ground: HTMLCanvasElement;
     /** Panels drawn without the renderer: here, and by a worker. */
     quick: HTMLCanvasElement;
@@ -112,7 +114,7 @@ export class Stage {
     private override: Float32Array | undefined;
     private stale = false;
     private staleOverlay = false;
-    private overlayTimer: ReturnType<typeof setTimeout> | undefined;
+    private laterTimer: ReturnType<typeof setTimeout> | undefined;
     private followed: (() => void) | null = null;
     /** A picture is on its way to the screen. */
     private flying = false;
@@ -124,6 +126,8 @@ export class Stage {
     /** What the renderer's picture is made for if it is that under quick panels, and its copy; empty: it is not. */
     private backdrop = "";
     private copied = "";
+    /** Copies so far. */
+    private grounds = 0;
     /** States are about to come. */
     private expecting = false;
     private practised = false;
@@ -271,7 +275,8 @@ export class Stage {
     invalidate(): void {
         this.stale = true;
         this.changed = performance.now();
-        this.schedule();
+        if (this.isLive && this.held) this.scheduleLater();
+        else this.schedule();
     }
 
     /** Also what does not move with the panels. */
@@ -280,11 +285,10 @@ export class Stage {
         this.invalidate();
     }
 
-    /** Only what lies over the scenes is. While a hand works on a slow renderer that waits for the next picture, for a while: every
-     *  frame of the page delays the states that are on their way here. */
+    /** Only what lies over the scenes is. */
     invalidateOverlay(): void {
         this.staleOverlay = true;
-        if (this.slow && this.held) this.overlayTimer ??= setTimeout(() => this.schedule(), overlayPatience);
+        if (this.slow && this.held) this.scheduleLater();
         else this.schedule();
     }
 
@@ -296,8 +300,9 @@ export class Stage {
 
     /** A hand begins or ends its work on the views. */
     hold(held: boolean): void {
-        if (this.held && !held) this.invalidate();
+        const ends = this.held && !held;
         this.held = held;
+        if (ends) this.invalidate();
         this.expecting = false;
     }
 
@@ -305,11 +310,15 @@ export class Stage {
     expect(): void {
         if (this.expecting || !this.held || !this.slow) return;
         this.expecting = true;
+        if (!this.override && this.copied && this.copied === this.backdropNow()) this.showLive(); // before the hand's first word leaves
         this.invalidate();
     }
 
     private schedule(): void {
         if (!this.request) this.request = requestAnimationFrame((now) => this.tick(now));
+    }
+    private scheduleLater(): void {
+        this.laterTimer ??= setTimeout(() => this.schedule(), pace);
     }
 
     /** Moves the camera so that the shell fills the view. */
@@ -398,6 +407,8 @@ export class Stage {
 
     private tick(now: number): void {
         this.request = 0;
+        clearTimeout(this.laterTimer);
+        this.laterTimer = undefined;
         const follow = this.followed;
         this.followed = null;
         follow?.();
@@ -435,8 +446,7 @@ export class Stage {
         for (const { orbit, state } of this.seen) moving = orbit.update(now, radiusOf(this.scenes![state].bounds)) || moving;
         const quick = effort === "quick";
         const backdrop = quick ? this.backdropNow() : "";
-        const copied = quick && backdrop === this.copied;
-        this.rendered = !copied && (!quick || backdrop !== this.backdrop);
+        this.rendered = !quick || (backdrop !== this.copied && backdrop !== this.backdrop);
         if (effort === "whole" && this.slow) this.copyBackdrop();
         if (this.rendered) {
             this.render(effort);
@@ -445,13 +455,14 @@ export class Stage {
         const still = quick && !this.rendered && !this.override;
         const live = still && this.showLive();
         if (!still) this.live?.stop();
+        const copied = quick && backdrop === this.copied;
         if (copied && before !== "quick" && this.live?.coming) {
             this.drawnWith = before; // for a moment what is there will do
             return moving;
         }
         if (quick && !live) this.drawQuick();
         this.canvas.style.visibility = copied ? "hidden" : "";
-        this.canvases.ground.hidden = !copied;
+        this.canvases.ground.hidden = !copied || live;
         this.canvases.quick.hidden = !quick || live;
         this.canvases.apart.hidden = !live;
         return moving;
@@ -472,28 +483,56 @@ export class Stage {
     private liveScene(): LiveScene | null {
         const { watch, colouring } = this;
         if (!watch || !colouring || !this.scenes || !Live.possible) return null;
-        this.live ??= new Live(this.canvases.apart, watch, () => this.invalidate(), (stamps) => this.onStamped(stamps));
+        this.copyBackdrop();
+        this.live ??= new Live(this.canvases.apart, watch, () => this.groundPixels(), () => this.invalidate(), (stamps) => this.onStamped(stamps));
         const sights = this.seen.map((view) => ({ ...this.setDetail(view, "quick").sight(this.windowOf(view)), state: view.state }));
-        return { ...this.pictureSize, sights, marks: this.scenes.flat.panels.shownMarks.slice(), ...colouring };
+        return { sights, marks: this.scenes.flat.panels.shownMarks.slice(), ground: this.grounds, ...colouring };
     }
 
-    /** A picture of what lies under quick panels, so that they can begin without the renderer. */
+    /** A picture of what lies under quick panels, so that they can begin without the renderer. It covers what it lies on itself. */
     private copyBackdrop(): void {
         const backdrop = this.backdropNow();
         if (backdrop === this.copied) return;
         this.render("quick");
         const { ground } = this.canvases;
         Object.assign(ground, this.pictureSize);
-        ground.getContext("2d", { willReadFrequently: true })!.drawImage(this.canvas, 0, 0);
+        const context = this.groundContext;
+        context.fillStyle = getComputedStyle(this.canvas.parentElement!).backgroundColor;
+        context.fillRect(0, 0, ground.width, ground.height);
+        this.paintGround(context);
+        context.drawImage(this.canvas, 0, 0);
         this.copied = backdrop;
+        this.grounds++;
+    }
+
+    private get groundContext(): CanvasRenderingContext2D {
+        return this.canvases.ground.getContext("2d", { willReadFrequently: true })!;
+    }
+    private groundPixels(): ImageData {
+        const { width, height } = this.canvases.ground;
+        return this.groundContext.getImageData(0, 0, width, height);
+    }
+
+    /** As the style sheet does it. */
+    private paintGround(context: CanvasRenderingContext2D): void {
+        for (const { rect } of this.shown.map((id) => this.views[id])) {
+            const [x, y, width, height] = [rect.x, rect.y, rect.width, rect.height].map((v) => Math.round(v * this.screenRatio));
+            const [cx, cy] = [x + 0.5 * width, y + 0.38 * height];
+            const gradient = context.createRadialGradient(cx, cy, 0, cx, cy, Math.hypot(0.5 * width, 0.62 * height));
+            gradient.addColorStop(0, this.look.backdrop[0]);
+            gradient.addColorStop(1, this.look.backdrop[1]);
+            context.fillStyle = gradient;
+            context.fillRect(x, y, width, height);
+        }
     }
 
     /** While nothing else is to be done. */
     private getReady(): void {
-        const scene = this.slow && !this.practised && this.liveScene();
+        const scene = this.slow && this.liveScene();
         if (!scene) return;
+        if (this.practised) this.live!.prepare(scene);
+        else this.live!.practise(this.shell!, scene);
         this.practised = true;
-        this.live!.practise(this.shell!, scene);
     }
 
     /** A view's part of the picture, in pixels. */
@@ -558,8 +597,6 @@ export class Stage {
 
     private drawOverlay(): void {
         this.staleOverlay = false;
-        clearTimeout(this.overlayTimer);
-        this.overlayTimer = undefined;
         const ratio = this.canvases.overlay.width / Math.max(1, this.width);
         this.context2d.setTransform(ratio, 0, 0, ratio, 0, 0);
         this.context2d.clearRect(0, 0, this.width, this.height);
@@ -641,18 +678,8 @@ export class Stage {
     paintOn(context: CanvasRenderingContext2D, ground = true): void {
         if (this.dirtyGround) this.drawGrounds();
         this.draw(performance.now(), "whole");
-        const ratio = this.canvas.width / this.width;
         context.clearRect(0, 0, this.canvas.width, this.canvas.height);
-        if (ground)
-            for (const id of this.shown) {
-                const { x, y, width, height } = this.views[id].rect;
-                const [cx, cy] = [(x + width / 2) * ratio, (y + 0.38 * height) * ratio];
-                const gradient = context.createRadialGradient(cx, cy, 0, cx, cy, Math.max(width, height) * 0.75 * ratio);
-                gradient.addColorStop(0, this.look.backdrop[0]);
-                gradient.addColorStop(1, this.look.backdrop[1]);
-                context.fillStyle = gradient;
-                context.fillRect(x * ratio, y * ratio, width * ratio, height * ratio);
-            }
+        if (ground) this.paintGround(context);
         context.drawImage(this.canvas, 0, 0);
     }
 
@@ -665,7 +692,7 @@ export class Stage {
     dispose(): void {
         cancelAnimationFrame(this.request);
         clearTimeout(this.restTimer);
-        clearTimeout(this.overlayTimer);
+        clearTimeout(this.laterTimer);
         this.live?.dispose();
         this.setShell(null);
         cancelAnimationFrame(this.request);

@@ -35,6 +35,8 @@ export const frames = signal(0);
 /** The same for words and figures: a few times a second while things move. */
 export const revision = signal(0);
 const readings = 150; // ms
+/** What is drawn elsewhere can wait here for the next picture. */
+const unhurried = 50; // ms
 export const currentShell = () => shell;
 
 /** The panel edge L, for figures that are given over it. */
@@ -209,11 +211,11 @@ function receiveBinary(frame: Frame, gathered: boolean): void {
         stateArrived(frame);
         unseen++;
     }
-    if (!receiveState(frame) || !held() || document.hidden) acknowledge();
+    if (!receiveState(frame, gathered) || !held() || document.hidden) acknowledge();
 }
 
 /** False when it is of a linkage that was replaced meanwhile. */
-function receiveState(frame: Frame): boolean {
+function receiveState(frame: Frame, gathered: boolean): boolean {
     let linkage = false;
     // documents count their linkages alike: what makes a new one is that its triangles come
     if (!shell || frame.topology !== shell.topology || frame.sections.has(section.triangles)) {
@@ -229,7 +231,8 @@ function receiveState(frame: Frame): boolean {
     for (const listener of shellListeners) listener(shell, { linkage, frame });
     if (!pendingFrame) {
         pendingFrame = true;
-        requestAnimationFrame(settleFrames);
+        if (gathered) setTimeout(settleFrames, unhurried);
+        else requestAnimationFrame(settleFrames);
     }
     return true;
 }
