@@ -38,6 +38,24 @@ describe("panels drawn without a renderer", () => {
     it("show their other side turned over", () => {
         expect(draw(triangle(0, true), { below: 0x123456 }).at(32, 40)).toBe(0x123456);
     });
+    it("lie over their ground and are taken off it again", () => {
+        const ground = Uint32Array.from({ length: size * size }, (_, k) => 0xff000000 + k);
+        const picture = makePicture(size, size, ground);
+        const put = () => drawPanels(picture, above, Float32Array.from(triangle(0)), Uint32Array.of(0, 1, 2), () => 0x808080, Uint8Array.of(0), { ...inks, lineAlpha: 0 });
+        put();
+        const once = picture.pixels.slice();
+        expect(once.every((p) => p >>> 24 === 255)).toBe(true);
+        const [[left, top, right, bottom]] = picture.drawn;
+        once.forEach((p, k) => {
+            const [x, y] = [k % size, Math.floor(k / size)];
+            if (x < left || x >= right || y < top || y >= bottom) expect(p).toBe(ground[k]);
+        });
+        expect(once[40 * size + 32]).toBe(0xff808080);
+        clear(picture);
+        expect(picture.pixels).toEqual(ground);
+        put();
+        expect(picture.pixels).toEqual(once);
+    });
     it("stay within their window", () => {
         const { pixels } = draw(triangle(0), { window: { ...above, x: 32, width: 32 } });
         expect(pixels.some((p, k) => p !== 0 && k % size < 32)).toBe(false);
