@@ -194,5 +194,7 @@ ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error*
         ax_free(f.corners);
     }
     ax_free(points);
+    if (status == AX_OK)
+        ax_lattice_renumber(lattice); // names of panels without minus signs
     return status;
 }

@@ -5,16 +5,14 @@
 #include "studio/files.h"
 #include "studio/message.h"
 
-#include <ctype.h>
-#include <dirent.h>
+#include <limits.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 static const char ending[] = ".json";
 
-// Examples are the recipes in the project's folder of that name.
+// Examples are recipes in the project's folder of that name.
 const char* hello_first_example(void)
 {
     return "welcome";
@@ -41,42 +39,34 @@ char* hello_example_document(const char* name)
     return path_of(AX_EXAMPLE_DOCUMENTS_PATH, name, ".auxshell");
 }
 
-static int is_recipe(const struct dirent* entry)
+// What an example is about says its own note.
+static json_t* example(const char* name, const char* title)
 {
-    size_t length = strlen(entry->d_name);
-    return length >= sizeof ending && strcmp(entry->d_name + length - strlen(ending), ending) == 0;
-}
-
-// "mars-habitat" is "Mars habitat"; what it is about says its own note.
-static json_t* example(const char* name)
-{
-    char title[NAME_LENGTH + 1];
-    snprintf(title, sizeof title, "%s", name);
-    title[0] = (char)toupper((unsigned char)title[0]);
-    for (char* c = title; *c; ++c)
-        if (*c == '-')
-            *c = ' ';
     char* path = hello_example_path(name);
     json_t* recipe = path ? json_load_file(path, 0, NULL) : NULL;
     const char* note = json_string_value(json_object_get(recipe, "note"));
-    json_t* row = json_pack("{s:s, s:s, s:s}", "name", name, "title", title, "doc", note ? note : "");
+    json_t* row = recipe ? json_pack("{s:s, s:s, s:s}", "name", name, "title", title, "doc", note ? note : "") : NULL;
     json_decref(recipe);
     ax_free(path);
     return row;
 }
 
+// The gallery's titles, in the order in which one wants to see them.
 static json_t* example_list(void)
 {
-    json_t* list = json_array();
-    struct dirent** entries;
-    int count = scandir(ax_examples_folder(), &entries, is_recipe, alphasort);
-    for (int k = 0; k < count; ++k) {
-        entries[k]->d_name[strlen(entries[k]->d_name) - strlen(ending)] = 0;
-        json_array_append_new(list, example(entries[k]->d_name));
-        free(entries[k]);
+    char folder[PATH_MAX];
+    snprintf(folder, sizeof folder, "%s/gallery", ax_examples_folder());
+    char* path = path_of(folder, "titles", ending);
+    json_t *titles = path ? json_load_file(path, 0, NULL) : NULL, *list = json_array(), *title;
+    const char* name;
+    json_object_foreach(titles, name, title)
+    {
+        json_t* row = example(name, json_string_value(title));
+        if (row)
+            json_array_append_new(list, row);
     }
-    if (count >= 0)
-        free(entries);
+    json_decref(titles);
+    ax_free(path);
     return list;
 }
 

@@ -91,7 +91,7 @@ export function StartPage() {
                             {hello.value.examples.map((e) => (
                                 <button key={e.name} type="button" class="example" onClick={() => void go("new", { example: e.name })}>
                                     <div class="picture"><ExamplePicture name={e.name} /></div>
-                                    <div class="words"><b>{e.title}</b><small title={e.doc}>{e.doc.replace(/^Figure \d+: /, "").replace(/^./, (c) => c.toUpperCase())}</small></div>
+                                    <div class="words"><b>{e.title}</b><small title={e.doc}>{e.doc.replace(/^[^:.]{3,30}: /, "").replace(/^./, (c) => c.toUpperCase())}</small></div>
                                 </button>
                             ))}
                         </div>
