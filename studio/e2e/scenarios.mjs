@@ -761,6 +761,43 @@ export const scenarios = {
         }, { reducedMotion: "reduce" });
     },
 
+    async "by touch: one finger selects, turns and paints, two pan and zoom"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            const touchscreen = await page.context().newCDPSession(page);
+            const touch = (type, places) => touchscreen.send("Input.dispatchTouchEvent", { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });
+            const swipe = async (from, by) => {
+                await touch("touchStart", from);
+                for (let k = 1; k <= 8; k++) await touch("touchMove", from.map(([x, y], i) => [x + (by[i][0] * k) / 8, y + (by[i][1] * k) / 8]));
+                await touch("touchEnd", []);
+            };
+            const pose = (view) => page.evaluate((v) => auxshell.stage.value.views[v].orbit.pose, view);
+            const middle = await page.evaluate(() => {
+                const { canvas, views } = auxshell.stage.value;
+                const r = canvas.getBoundingClientRect();
+                return [r.left + views.deployed.rect.x + views.deployed.rect.width / 2, r.top + views.deployed.rect.height / 2];
+            });
+            const start = await pose("deployed");
+            await swipe([middle], [[60, 0]]);
+            const turned = await pose("deployed");
+            assert.ok(Math.abs(turned.azimuth - start.azimuth) > 5, "one finger turns the view");
+            assert.equal(turned.distance, start.distance);
+            const pair = [[middle[0] - 50, middle[1]], [middle[0] + 50, middle[1]]];
+            await swipe(pair, [[-50, 0], [50, 0]]);
+            const near = await pose("deployed");
+            assert.ok(near.distance < 0.6 * turned.distance && near.azimuth === turned.azimuth, "two fingers zoom");
+            await swipe(pair, [[0, 60], [0, 60]]);
+            const moved = await pose("deployed");
+            assert.ok(moved.azimuth === near.azimuth && Math.abs(moved.distance / near.distance - 1) < 1e-9 && Math.hypot(...moved.target.map((v, k) => v - near.target[k])) > 0.1, "and pan");
+            await touch("touchStart", [await hand.flat(0.5, 0.5)]);
+            await touch("touchEnd", []);
+            assert.equal(await page.evaluate(() => auxshell.selection.selected.value.size), 1, "a tap selects");
+            await hand.key("b");
+            await swipe([await hand.flat(0.45, 0.45)], [[40, 0]]);
+            await hand.stepsAre("start_circle", "gradient_radial", "rim_circle", "inflation", "paint");
+        }, { hasTouch: true, reducedMotion: "reduce" });
+    },
+
     async "the tour has five steps, once"(browser) {
         const studio = await studioOn([circle]);
         try {

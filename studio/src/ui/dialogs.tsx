@@ -89,7 +89,7 @@ export function ShortcutsDialog() {
         <Dialog title="Keyboard and pointer" size="middle-size" onClose={close}>
             <div class="body" tabIndex={0} role="region" aria-label="Shortcuts">
                 <Row label="Navigate">{() => <Segments<Navigation> name="Navigate as in" value={navigation.value} options={(Object.keys(navigationWords) as Navigation[]).map((n) => ({ value: n, title: navigationWords[n].title }))} onChange={(n) => (navigation.value = n)} />}</Row>
-                <p class="muted" style={{ margin: "8px 0 24px" }}>{navigationWords[navigation.value].lines.map(([what, how]) => `${what}: ${how}`).join(". ")}. The left button is always the tool's.</p>
+                <p class="muted" style={{ margin: "8px 0 24px" }}>{navigationWords[navigation.value].lines.map(([what, how]) => `${what}: ${how}`).join(". ")}. The left button is always the tool's. On a touch screen one finger works with the tool on the shell and turns the view beside it, two fingers pan and zoom.</p>
                 <div class="shortcuts">
                     {groups.map((g) => (
                         <section key={g}>

@@ -281,9 +281,14 @@ function tagDistance(hit: Hit): number {
     return 12 + hit.view.orbit.pixels(tool.value.reach?.() ?? 0, hit.view.rect.height);
 }
 
+/** A finger that moves less clicks; pixels. */
+const tapReach = 8;
+
 /** Presses, drags and wheels on the views. Returns what takes them off again. */
 function pointerEvents(place: HTMLElement, stage: Stage): () => void {
     let gesture: { kind: Gesture | "tool"; view: View; x: number; y: number; id: number } | null = null;
+    /** A finger that turns the view would have been a click, had it not moved. */
+    let tap: PointerEvent | null = null;
     const touches = new Map<number, { x: number; y: number }>();
     let corner = place.getBoundingClientRect();
     const local = (event: { clientX: number; clientY: number }) => {
@@ -317,14 +322,17 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
             touches.set(event.pointerId, at);
             if (touches.size === 2) {
                 if (gesture?.kind === "tool") tool.value.cancel?.();
-                gesture = { kind: "orbit", view, ...at, id: event.pointerId };
+                tap = null;
+                gesture = { kind: "pan", view, ...at, id: event.pointerId };
                 return;
             }
         }
-        const planar = view.orbit.pose.projection === "parallel" && view.orbit.preset !== null;
-        const kind = gestureOf(navigation.value, event, view.state === "flat" || planar);
+        const planar = view.state === "flat" || (view.orbit.pose.projection === "parallel" && view.orbit.preset !== null);
+        const turns = event.pointerType === "touch" && (tool.value.id === "select" || making.value || !stage.pick(view, at.x, at.y));
+        const kind = turns ? (planar ? "pan" : "orbit") : gestureOf(navigation.value, event, planar);
         place.setPointerCapture(event.pointerId);
         stage.hold(true);
+        tap = turns ? event : null;
         if (kind) gesture = { kind, view, ...at, id: event.pointerId };
         else if (event.button === 0 && !making.value) {
             const double = event.timeStamp - lastDown < 350;
@@ -346,15 +354,17 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
                 const spread = (p: typeof before) => Math.hypot(p[0].x - p[1].x, p[0].y - p[1].y);
                 const middle = (p: typeof before) => ({ x: (p[0].x + p[1].x) / 2, y: (p[0].y + p[1].y) / 2 });
                 const [a, b] = [middle(before), middle(after)];
-                if (gesture.view.state === "flat") gesture.view.orbit.pan(b.x - a.x, b.y - a.y, gesture.view.rect.height);
-                else gesture.view.orbit.orbit(b.x - a.x, b.y - a.y);
-                gesture.view.orbit.zoom(spread(before) / Math.max(1, spread(after)), 0, 0);
+                const { orbit, rect } = gesture.view;
+                orbit.pan(b.x - a.x, b.y - a.y, rect.height);
+                orbit.zoom(spread(before) / Math.max(1, spread(after)), (2 * (b.x - rect.x)) / rect.width - 1, 1 - (2 * (b.y - rect.y)) / rect.height);
                 stage.invalidate();
                 return;
             }
         }
         if (gesture && gesture.kind !== "tool") {
             const [dx, dy] = [at.x - gesture.x, at.y - gesture.y];
+            if (tap && Math.hypot(dx, dy) < tapReach) return;
+            tap = null;
             const { orbit, rect } = gesture.view;
             if (gesture.kind === "orbit") orbit.orbit(dx, dy);
             else if (gesture.kind === "pan") orbit.pan(dx, dy, rect.height);
@@ -393,11 +403,19 @@ function pointerEvents(place: HTMLElement, stage: Stage): () => void {
         gesture = null;
         stage.hold(false);
         if (ended?.kind === "tool") tool.value.up?.(hitOf(event, ended.view));
+        else if (tap && ended && !making.value) {
+            const hit = hitOf(event, ended.view);
+            if (tool.value.down?.(hit)) tool.value.up?.(hit);
+        }
+        tap = null;
+        // the finger that stays goes on where it is
+        const [id] = touches.keys();
+        if (touches.size === 1 && ended) gesture = { kind: ended.view.state === "flat" ? "pan" : "orbit", view: ended.view, ...touches.get(id)!, id };
     };
     const lost = (event: PointerEvent) => {
         touches.delete(event.pointerId);
         if (gesture?.kind === "tool") tool.value.cancel?.();
-        gesture = null;
+        gesture = tap = null;
         stage.hold(false);
     };
     const leave = () => {
