@@ -541,6 +541,61 @@ static void painted_curvature_is_summed_before_any_solve(void** state)
     ax_form_free(form);
 }
 
+// A few hinges bear it all: panels beside them are pulled hardest. The place is named, and a form that was stored says the same.
+static void material_is_told_where_it_lacks(void** state)
+{
+    (void)state;
+    ax_form* form = disk(600, 1.3);
+    paint(form, sphere);
+    set_dynamics(form, AX_DYNAMICS_EXPAND, 3);
+    settle(form);
+    ax_form_view view = ax_form_look(form);
+    int n = view.linkage->hinge_count, *hinges = AX_NEW(int, n), count = 0;
+    double(*places)[3] = ax_alloc((size_t)n, sizeof *places);
+    for (int h = 0; h < n; ++h)
+        if (view.linkage->on_rim[h] && fmin(fabs(view.sheet[h][0]), fabs(view.sheet[h][1])) < 0.17) {
+            memcpy(places[count], view.deployed[h], sizeof *places);
+            hinges[count++] = h;
+        }
+    ax_form_constraint corners = {.name = "corners",
+                                  .kind = AX_HELD_FIXED,
+                                  .count = count,
+                                  .hinges = hinges,
+                                  .weight = 1,
+                                  .support = true,
+                                  .places = (const double(*)[3])places};
+    ax_error refused;
+    assert_int_equal(ax_form_put_constraint(form, &corners, &refused), AX_OK);
+    set_dynamics(form, AX_DYNAMICS_GRAVITY, 3);
+    settle(form);
+    size_t size;
+    void* bytes = ax_form_save(form, &size);
+    for (int stored = 0; stored < 2; ++stored) {
+        ax_error error;
+        if (stored) {
+            ax_form_free(form);
+            assert_int_equal(ax_form_load(bytes, size, &form, &error), AX_OK);
+        }
+        ax_form_report r = measured(form);
+        const ax_finding* tight = NULL;
+        for (int k = 0; k < r.finding_count && !tight; ++k)
+            tight = strcmp(r.findings[k].kind, "tight") == 0 ? r.findings + k : NULL;
+        assert_non_null(tight);
+        const double* at = ax_form_look(form).sheet[tight->hinge];
+        double nearest = INFINITY;
+        for (int k = 0; k < count; ++k)
+            nearest = fmin(nearest, ax_distance2(at, ax_form_look(form).sheet[hinges[k]]));
+        assert_at_most(nearest, 0.1);
+        assert_non_null(strstr(tight->text, "Too little material at panel"));
+        assert_non_null(strstr(tight->text, "Paint larger scale factors there"));
+        ax_form_report_free(&r);
+    }
+    ax_free(hinges);
+    ax_free(places);
+    ax_free(bytes);
+    ax_form_free(form);
+}
+
 static void too_little_material_is_told(void** state)
 {
     (void)state;
@@ -658,6 +713,7 @@ int main(void)
         cmocka_unit_test(scale_factors_are_judged_away_from_the_rim),
         cmocka_unit_test(a_design_of_uneven_panels_settles_where_it_lies),
         cmocka_unit_test(painted_curvature_is_summed_before_any_solve),
+        cmocka_unit_test(material_is_told_where_it_lacks),
         cmocka_unit_test(too_little_material_is_told),
         cmocka_unit_test(unusable_requests_are_refused),
     };

@@ -193,7 +193,7 @@ typedef struct ax_form_view {
 } ax_form_view;
 ax_form_view ax_form_look(ax_form* form);
 // Measured when asked for; borrowed likewise. Per hole: area over that of the cyclic polygon of its sides, of the simulated state if
-// there is one. Per hinge: largest multiplier over L; above 2 and rising: too little material here.
+// there is one. Per hinge: largest multiplier over L of its panels; above 2: too little material here.
 const double* ax_form_opening(ax_form* form);
 const double* ax_form_material(ax_form* form);
 
@@ -214,7 +214,7 @@ typedef struct ax_finding {
     int triangle, hinge; // where; -1 if nowhere in particular
     int other;           // second panel of a pair, else -1
     double value, limit;
-    char text[160]; // a sentence for people, with figures and units
+    char text[320]; // for people: what, where, with figures and units, and what to do about it
 } ax_finding;
 
 // What a constraint or a rim part was asked, and what came of it.

@@ -11,7 +11,6 @@
 #include <string.h>
 
 static const double border_unequal = 0.7; // of the mean edge, what released border panels may differ by
-static const double overlap_depth = 1e-6; // of the mean edge: closed panels touch
 
 typedef struct moved {
     double rms, max;
@@ -189,7 +188,7 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
                                 .scale_max = 2};
     ax_joint_result joint = {0};
     ax_progress_part first, second;
-    ax_status status = ax_solve_apart(&problem, overlap_depth * unit, flat, deployed,
+    ax_status status = ax_solve_apart(&problem, AX_FORM_OVERLAP * unit, flat, deployed,
                                       ax_progress_within(&first, progress, 0, 0.4), &joint, error);
     if (status == AX_OK && !joint.converged)
         status = ax_fail(

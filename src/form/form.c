@@ -281,6 +281,7 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
     f->realised = AX_NEW(double, t);
     f->opening = AX_NEW(double, linkage->hole_count + 1);
     f->material = AX_NEW0(double, n);
+    f->pull = AX_NEW0(double, t);
     f->scratch = ax_alloc(2 * n, sizeof *f->scratch);
     f->lanes = AX_NEW(double, 3 * t + 6 * (size_t)linkage->hole_count);
     for (size_t k = 0; k < t; ++k) {
@@ -345,11 +346,11 @@ void ax_form_free(ax_form* f)
         ax_free((void*)f->underlay_names[k]);
         ax_mesh_free(f->underlays + k);
     }
-    void* blocks[] = {f->wide,    f->centres,        f->mouths,     f->lines,    f->bends,
-                      f->holder,  f->holes,          f->prescribed, f->rim,      f->held,
-                      f->sets,    f->underlays,      f->flat,       f->deployed, f->simulated,
-                      f->side,    f->underlay_names, f->clearances, f->pending,  f->realised,
-                      f->opening, f->material,       f->scratch,    f->lanes,    f->stretch};
+    void* blocks[] = {f->wide,    f->centres,    f->mouths,    f->lines,    f->bends,          f->holder,
+                      f->holes,   f->prescribed, f->rim,       f->held,     f->sets,           f->underlays,
+                      f->flat,    f->deployed,   f->simulated, f->side,     f->underlay_names, f->clearances,
+                      f->pending, f->realised,   f->opening,   f->material, f->scratch,        f->lanes,
+                      f->stretch, f->pull};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_free(f);

@@ -6,14 +6,7 @@
 #include "constraint/cyclic.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-// Limits of what a settled form keeps, and above which people are told.
-static const double settled_error = 1e-2, overlap_depth = 1e-6, slack_opening = 0.95, tight_multiplier = 2,
-                    rim_gap = 0.02, loaded_gap = 0.3, scale_gap = 0.1;
 
 double ax_form_sides_mean(const ax_form* f)
 {
@@ -23,20 +16,13 @@ double ax_form_sides_mean(const ax_form* f)
     return sum / (3.0 * f->lattice.linkage.triangle_count);
 }
 
-// Corners of edge k of a panel.
-static void edge_of(const ax_form* f, int t, int k, int* a, int* b)
-{
-    *a = f->lattice.linkage.triangles[t][(k + 1) % 3];
-    *b = f->lattice.linkage.triangles[t][(k + 2) % 3];
-}
-
 double ax_form_flat_error(const ax_form* f)
 {
     double most = 0;
     bool shares = ax_form_shares(f);
     for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
         for (int k = 0, a, b; k < 3; ++k) {
-            edge_of(f, t, k, &a, &b);
+            ax_form_edge_ends(f, t, k, &a, &b);
             double is = ax_distance2(f->flat[a], f->flat[b]);
             double asked = shares ? 0.5 * (is + ax_distance3(f->deployed[a], f->deployed[b])) : ax_form_edge(f, t, k);
             most = fmax(most, fabs(is / asked - 1));
@@ -49,7 +35,7 @@ double ax_form_deployed_error(const ax_form* f)
     double most = 0;
     for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
         for (int k = 0, a, b; k < 3; ++k) {
-            edge_of(f, t, k, &a, &b);
+            ax_form_edge_ends(f, t, k, &a, &b);
             double flat = ax_distance2(f->flat[a], f->flat[b]);
             most = fmax(most, fabs(ax_distance3(f->deployed[a], f->deployed[b]) / flat - 1));
         }
@@ -61,7 +47,7 @@ double ax_form_simulated_error(const ax_form* f)
     double most = 0;
     for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
         for (int k = 0, a, b; k < 3; ++k) {
-            edge_of(f, t, k, &a, &b);
+            ax_form_edge_ends(f, t, k, &a, &b);
             most = fmax(most, fabs(ax_distance3(f->simulated[a], f->simulated[b]) / f->side[t][k] - 1));
         }
     return most;
@@ -125,12 +111,16 @@ const double* ax_form_material(ax_form* f)
     const ax_linkage* linkage = &f->lattice.linkage;
     double mean = ax_form_sides_mean(f);
     memset(f->material, 0, (size_t)linkage->hinge_count * sizeof *f->material);
+    memset(f->pull, 0, (size_t)linkage->triangle_count * sizeof *f->pull);
+    if (f->pending) // of a form that was stored
+        ax_form_build(f);
     ax_solver* s = ax_form_hangs(f) ? f->hang : f->shape;
     const ax_form_groups* g = ax_form_hangs(f) ? &f->hang_groups : &f->shape_groups;
     if (f->stale || !s)
         return f->material;
     for (int t = 0; t < linkage->triangle_count; ++t) {
         double u = ax_solver_multiplier(s, g->panels, t) / mean;
+        f->pull[t] = u;
         for (int k = 0; k < 3; ++k)
             f->material[linkage->triangles[t][k]] = fmax(f->material[linkage->triangles[t][k]], u);
     }
@@ -400,30 +390,6 @@ static void measure_scale(const ax_form* f, ax_form_report* r)
     r->scale_off_rms = sqrt(r->scale_off_rms);
 }
 
-// ---- findings -------------------------------------------------------------------------------------------------------------------
-
-static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kind, double value, double limit,
-                        const char* format, ...) __attribute__((format(printf, 6, 7)));
-static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kind, double value, double limit,
-                        const char* format, ...)
-{
-    r->findings = ax_realloc(r->findings, (size_t)r->finding_count + 1, sizeof *r->findings);
-    ax_finding* finding = r->findings + r->finding_count++;
-    *finding = (ax_finding){
-        .severity = severity, .kind = kind, .triangle = -1, .hinge = -1, .other = -1, .value = value, .limit = limit};
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(finding->text, sizeof finding->text, format, arguments);
-    va_end(arguments);
-    return finding;
-}
-
-static int by_severity(const void* a, const void* b)
-{
-    const ax_finding *x = a, *y = b;
-    return x->severity != y->severity ? (int)y->severity - (int)x->severity : strcmp(x->kind, y->kind);
-}
-
 static double share_down(const ax_form* f, const double (*x)[3])
 {
     int down = 0;
@@ -479,178 +445,6 @@ bool ax_form_left_over(const ax_form* f)
     return painted.curvature_max < 2 * AX_PI;
 }
 
-// Distance of the part of a panel that comes nearest to a surface, if it is below *least. No part of a triangle is further from its
-// centroid than the furthest corner, so parts that cannot come nearer are left out and the rest is quartered.
-static void nearest_part(const ax_closest* tree, const double corner[3][3], double tolerance, int face, double* least)
-{
-    double centre[3], reach = 0;
-    for (int c = 0; c < 3; ++c)
-        centre[c] = (corner[0][c] + corner[1][c] + corner[2][c]) / 3;
-    for (int k = 0; k < 3; ++k)
-        reach = fmax(reach, ax_distance3(centre, corner[k]));
-    ax_closest_point on = ax_closest_find(tree, centre, face);
-    *least = fmin(*least, on.distance);
-    if (reach < tolerance || on.distance - reach > *least - tolerance)
-        return;
-    double middle[3][3];
-    for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c)
-            middle[k][c] = 0.5 * (corner[(k + 1) % 3][c] + corner[(k + 2) % 3][c]);
-    nearest_part(tree, (const double(*)[3])middle, tolerance, on.face, least);
-    for (int k = 0; k < 3; ++k) {
-        double part[3][3];
-        memcpy(part[0], corner[k], sizeof part[0]);
-        memcpy(part[1], middle[(k + 2) % 3], sizeof part[1]);
-        memcpy(part[2], middle[(k + 1) % 3], sizeof part[2]);
-        nearest_part(tree, (const double(*)[3])part, tolerance, on.face, least);
-    }
-}
-
-// Least distance of the panels from an underlay, to a thousandth of an edge, and the panel.
-static double underlay_distance(const ax_form* f, int k, int* panel)
-{
-    const ax_linkage* linkage = &f->lattice.linkage;
-    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
-    double tolerance = 1e-3 * ax_form_sides_mean(f), least = INFINITY;
-    ax_closest* tree = ax_closest_make(f->underlays + k);
-    *panel = -1;
-    for (int t = 0; t < linkage->triangle_count; ++t) {
-        double corner[3][3], before = least;
-        for (int c = 0; c < 3; ++c)
-            memcpy(corner[c], x[linkage->triangles[t][c]], sizeof corner[c]);
-        nearest_part(tree, (const double(*)[3])corner, tolerance, -1, &least);
-        *panel = least < before ? t : *panel;
-    }
-    ax_closest_free(tree);
-    return least;
-}
-
-static int first_flipped(const ax_form* f)
-{
-    const ax_linkage* linkage = &f->lattice.linkage;
-    for (int t = 0; t < linkage->triangle_count; ++t) {
-        const int* h = linkage->triangles[t];
-        const double *o = f->flat[h[0]], *p = f->flat[h[1]], *q = f->flat[h[2]];
-        if (ax_cross2((double[2]){p[0] - o[0], p[1] - o[1]}, (double[2]){q[0] - o[0], q[1] - o[1]}) <= 0)
-            return t;
-    }
-    return -1;
-}
-
-// The panel whose edges differ most between the flat state and one in space.
-static int most_strained(const ax_form* f, const double (*x)[3])
-{
-    int at = -1;
-    double most = -1;
-    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
-        for (int k = 0, a, b; k < 3; ++k) {
-            edge_of(f, t, k, &a, &b);
-            double off = fabs(ax_distance3(x[a], x[b]) / ax_distance2(f->flat[a], f->flat[b]) - 1);
-            if (off > most)
-                most = off, at = t;
-        }
-    return at;
-}
-
-static void find_problems(ax_form* f, ax_form_report* r)
-{
-    const ax_linkage* linkage = &f->lattice.linkage;
-    double degree = 180 / AX_PI;
-    const char* unit = ax_unit_name(f->unit);
-    bool moved = f->dynamics.kind != AX_DYNAMICS_NONE;
-    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
-    double worst = fmax(r->flat_error, moved ? fmax(r->deployed_error, ax_form_hangs(f) ? r->simulated_error : 0) : 0);
-    if (worst > settled_error)
-        tell(r, AX_SEVERITY_FAILURE, "unsettled", worst, settled_error, "Edges are off by %.2g %%: %s.", 100 * worst,
-             f->iterations ? "the request cannot be met, or needs more steps" : "not solved yet")
-            ->triangle = most_strained(f, x);
-    if (r->overlap_pairs) {
-        int pair[1][2] = {{-1, -1}};
-        ax_measure_overlaps(linkage, (const double(*)[2])f->flat, overlap_depth * r->edge, 1, pair);
-        char a[16], b[16];
-        ax_panel_name(linkage, pair[0][0], a);
-        ax_panel_name(linkage, pair[0][1], b);
-        tell(r, AX_SEVERITY_FAILURE, "overlap", r->overlap_pairs, 0,
-             "%d pairs of panels overlap in the flat state, %s and %s first.", r->overlap_pairs, a, b);
-        r->findings[r->finding_count - 1].triangle = pair[0][0];
-        r->findings[r->finding_count - 1].other = pair[0][1];
-    }
-    if (r->flipped)
-        tell(r, AX_SEVERITY_FAILURE, "flipped", r->flipped, 0, "%d panels are turned over in the flat state.",
-             r->flipped)
-            ->triangle = first_flipped(f);
-    if (r->mouth_min < f->mouth_min - 0.1 / degree)
-        tell(r, r->mouth_min < 0 ? AX_SEVERITY_FAILURE : AX_SEVERITY_WARNING, "mouth", r->mouth_min * degree,
-             f->mouth_min * degree,
-             "The smallest mouth is %.1f degrees, %.1f are asked: lower the scale factors there.",
-             r->mouth_min * degree, f->mouth_min * degree)
-            ->hinge = r->mouth_hinge;
-    if (r->scale_off_max > scale_gap) {
-        char name[16];
-        ax_panel_name(linkage, r->scale_off_triangle, name);
-        tell(r, AX_SEVERITY_WARNING, "scale", r->scale_off_max, scale_gap,
-             "Scale factors come out up to %.2f off what was asked, most at panel %s (asked %.2f, realised %.2f).",
-             r->scale_off_max, name, f->prescribed[r->scale_off_triangle], f->realised[r->scale_off_triangle])
-            ->triangle = r->scale_off_triangle;
-    }
-    if (moved && linkage->hole_count && r->opening_min < slack_opening) {
-        int slack = 0, least = 0;
-        for (int k = 0; k < linkage->hole_count; ++k) {
-            slack += f->opening[k] < slack_opening;
-            least = f->opening[k] < f->opening[least] ? k : least;
-        }
-        tell(r, AX_SEVERITY_WARNING, "slack", r->opening_min, slack_opening,
-             "%d of %d holes are slack, the slackest is %.0f %% open: too much material there.", slack,
-             linkage->hole_count, 100 * r->opening_min)
-            ->hinge = linkage->hole_hinges[linkage->hole_start[least]];
-    }
-    int fold[2], folds = moved ? ax_form_folds(f, x, fold) : 0;
-    if (folds) {
-        tell(r, AX_SEVERITY_WARNING, "folded", folds, 0, "%d pairs of neighbouring panels are folded onto each other.",
-             folds);
-        r->findings[r->finding_count - 1].triangle = fold[0];
-        r->findings[r->finding_count - 1].other = fold[1];
-    }
-    if (moved) {
-        int tight = 0;
-        for (int h = 0; h < linkage->hinge_count; ++h)
-            tight = f->material[h] > f->material[tight] ? h : tight;
-        if (f->material[tight] > tight_multiplier)
-            tell(r, AX_SEVERITY_WARNING, "tight", f->material[tight], tight_multiplier,
-                 "Too little material: panels are pulled %.1f edges beyond what they reach. Raise the scale factors or "
-                 "bring the boundary closer.",
-                 f->material[tight])
-                ->hinge = tight;
-    }
-    for (int k = 0; k < r->held_count; ++k) {
-        // under the load alone, what does not support is as near as a simulated state is to be to its design
-        bool yields = ax_form_hangs(f) && !ax_form_shares(f) && !r->held[k].supports;
-        double gap = (yields ? loaded_gap : rim_gap) * r->edge;
-        if (r->held[k].residual > gap && strcmp(r->held[k].kind, "fairness") != 0)
-            tell(r, AX_SEVERITY_WARNING, "held", r->held[k].residual, gap, "'%s' (%s) is missed by up to %.3g %s.",
-                 r->held[k].name, r->held[k].kind, r->held[k].residual, unit)
-                ->hinge = r->held[k].hinge;
-    }
-    if (r->curvature_max > 2 * AX_PI)
-        tell(r, AX_SEVERITY_WARNING, "overhang", r->curvature_max, 2 * AX_PI,
-             "The painted factors sum to %.0f degrees of curvature, above 360: fully open the surface turns over.",
-             r->curvature_max * degree);
-    else if (moved && r->overhang > 0)
-        tell(r, AX_SEVERITY_NOTE, "overhang", r->overhang, 0, "%.1f %% of the panels look down: no height field.",
-             100 * r->overhang);
-    for (int k = 0; k < f->underlay_count; ++k) {
-        int at;
-        double least = underlay_distance(f, k, &at);
-        if (least < f->clearances[k])
-            tell(r, AX_SEVERITY_FAILURE, "clearance", least, f->clearances[k],
-                 "The shell comes within %.3g %s of '%s'; %.3g are asked.", least, unit, f->underlay_names[k],
-                 f->clearances[k])
-                ->triangle = at;
-    }
-    if (r->finding_count)
-        qsort(r->findings, (size_t)r->finding_count, sizeof *r->findings, by_severity);
-}
-
 void ax_form_measure(ax_form* f, ax_form_report* r)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
@@ -669,7 +463,7 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
     r->mouth_min = mouths.min_deg * AX_PI / 180;
     r->mouth_hinge = mouths.min_hinge;
     r->flipped = ax_measure_flipped(linkage, flat);
-    r->overlap_pairs = ax_measure_overlaps(linkage, flat, overlap_depth * r->edge, 0, NULL);
+    r->overlap_pairs = ax_measure_overlaps(linkage, flat, AX_FORM_OVERLAP * r->edge, 0, NULL);
     measure_scale(f, r);
     r->opening_min = 1, r->opening_mean = 0;
     for (int k = 0; k < linkage->hole_count; ++k) {
@@ -688,7 +482,7 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
     }
     measure_overhang(f, r);
     measure_held(f, r);
-    find_problems(f, r);
+    ax_form_find_problems(f, r);
     r->settled = true;
     for (int k = 0; k < r->finding_count; ++k)
         r->settled = r->settled &&

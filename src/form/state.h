@@ -84,7 +84,8 @@ struct ax_form {
     size_t pending_count;
 
     // measured on demand
-    double *realised, *opening, *material;
+    double *realised, *opening, *material; // per panel, hole and hinge
+    double* pull;                          // per panel: its multiplier over L
 
     double (*scratch)[3]; // two per hinge
     double* lanes;        // three per panel, six per hole
@@ -107,6 +108,13 @@ static inline double ax_form_fineness(const ax_form* f)
     return f->lattice.linkage.triangle_count / 600.0;
 }
 
+// Ends of edge k of a panel.
+static inline void ax_form_edge_ends(const ax_form* f, int triangle, int k, int* a, int* b)
+{
+    *a = f->lattice.linkage.triangles[triangle][(k + 1) % 3];
+    *b = f->lattice.linkage.triangles[triangle][(k + 2) % 3];
+}
+
 // Edge k of a panel as prescribed, and the mean of the three.
 static inline double ax_form_edge(const ax_form* f, int triangle, int k)
 {
@@ -119,6 +127,8 @@ static inline double ax_form_side(const ax_form* f, int triangle)
 
 // Stiffness, panels at 1, with which solvers always draw hinges to where they are: nothing flies off that no row holds.
 #define AX_FORM_PROXIMAL 1e-5
+
+#define AX_FORM_OVERLAP 1e-6 // of the mean edge: closed panels touch
 
 enum { AX_FORM_LEAST = 12, AX_FORM_MOST = 2000000 }; // panels
 
@@ -181,6 +191,8 @@ double* ax_form_multipliers(const ax_form* form, size_t* count);
 double ax_form_flat_error(const ax_form* form);
 double ax_form_deployed_error(const ax_form* form);
 double ax_form_simulated_error(const ax_form* form);
+// Adds to a report, which holds the figures, what they tell people.
+void ax_form_find_problems(ax_form* form, ax_form_report* report);
 // Pairs of neighbouring panels whose normals oppose each other.
 int ax_form_folds(const ax_form* form, const double (*x)[3], int first[2]); // panels of the first; NULL: not wanted
 // The deployed state is turned over, and what is painted is not: it is left from what was painted before.

@@ -1,0 +1,300 @@
+// What people are told of a form: what is the matter, where, by how much, and what to do about it.
+#include "form/regions.h"
+#include "form/state.h"
+
+#include "analysis/measure.h"
+#include "base/vec.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+// Limits of what a settled form keeps, and above which people are told.
+enum { MOST_PLACES = 3 }; // told of what is the matter at several
+static const double settled_error = 1e-2, slack_opening = 0.95, tight_multiplier = 2, rim_gap = 0.02, loaded_gap = 0.3,
+                    scale_gap = 0.1;
+
+static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kind, double value, double limit,
+                        const char* format, ...) __attribute__((format(printf, 6, 7)));
+static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kind, double value, double limit,
+                        const char* format, ...)
+{
+    r->findings = ax_realloc(r->findings, (size_t)r->finding_count + 1, sizeof *r->findings);
+    ax_finding* finding = r->findings + r->finding_count++;
+    *finding = (ax_finding){
+        .severity = severity, .kind = kind, .triangle = -1, .hinge = -1, .other = -1, .value = value, .limit = limit};
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(finding->text, sizeof finding->text, format, arguments);
+    va_end(arguments);
+    return finding;
+}
+
+static int by_severity(const ax_finding* x, const ax_finding* y)
+{
+    return x->severity != y->severity ? (int)y->severity - (int)x->severity : strcmp(x->kind, y->kind);
+}
+
+// Distance of the part of a panel that comes nearest to a surface, if it is below *least. No part of a triangle is further from its
+// centroid than the furthest corner, so parts that cannot come nearer are left out and the rest is quartered.
+static void nearest_part(const ax_closest* tree, const double corner[3][3], double tolerance, int face, double* least)
+{
+    double centre[3], reach = 0;
+    for (int c = 0; c < 3; ++c)
+        centre[c] = (corner[0][c] + corner[1][c] + corner[2][c]) / 3;
+    for (int k = 0; k < 3; ++k)
+        reach = fmax(reach, ax_distance3(centre, corner[k]));
+    ax_closest_point on = ax_closest_find(tree, centre, face);
+    *least = fmin(*least, on.distance);
+    if (reach < tolerance || on.distance - reach > *least - tolerance)
+        return;
+    double middle[3][3];
+    for (int k = 0; k < 3; ++k)
+        for (int c = 0; c < 3; ++c)
+            middle[k][c] = 0.5 * (corner[(k + 1) % 3][c] + corner[(k + 2) % 3][c]);
+    nearest_part(tree, (const double(*)[3])middle, tolerance, on.face, least);
+    for (int k = 0; k < 3; ++k) {
+        double part[3][3];
+        memcpy(part[0], corner[k], sizeof part[0]);
+        memcpy(part[1], middle[(k + 2) % 3], sizeof part[1]);
+        memcpy(part[2], middle[(k + 1) % 3], sizeof part[2]);
+        nearest_part(tree, (const double(*)[3])part, tolerance, on.face, least);
+    }
+}
+
+// Least distance of the panels from an underlay, to a thousandth of an edge, and the panel.
+static double underlay_distance(const ax_form* f, int k, int* panel)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
+    double tolerance = 1e-3 * ax_form_sides_mean(f), least = INFINITY;
+    ax_closest* tree = ax_closest_make(f->underlays + k);
+    *panel = -1;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double corner[3][3], before = least;
+        for (int c = 0; c < 3; ++c)
+            memcpy(corner[c], x[linkage->triangles[t][c]], sizeof corner[c]);
+        nearest_part(tree, (const double(*)[3])corner, tolerance, -1, &least);
+        *panel = least < before ? t : *panel;
+    }
+    ax_closest_free(tree);
+    return least;
+}
+
+static int first_flipped(const ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        const int* h = linkage->triangles[t];
+        const double *o = f->flat[h[0]], *p = f->flat[h[1]], *q = f->flat[h[2]];
+        if (ax_cross2((double[2]){p[0] - o[0], p[1] - o[1]}, (double[2]){q[0] - o[0], q[1] - o[1]}) <= 0)
+            return t;
+    }
+    return -1;
+}
+
+// The panel whose edges differ most between the flat state and one in space.
+static int most_strained(const ax_form* f, const double (*x)[3])
+{
+    int at = -1;
+    double most = -1;
+    for (int t = 0; t < f->lattice.linkage.triangle_count; ++t)
+        for (int k = 0, a, b; k < 3; ++k) {
+            ax_form_edge_ends(f, t, k, &a, &b);
+            double off = fabs(ax_distance3(x[a], x[b]) / ax_distance2(f->flat[a], f->flat[b]) - 1);
+            if (off > most)
+                most = off, at = t;
+        }
+    return at;
+}
+
+// The panel that has a hinge, and where it is on the sheet, in which strokes are given.
+static const char* name_place(const ax_form* f, int hinge, char text[64])
+{
+    char panel[16];
+    ax_panel_name(&f->lattice.linkage, f->holder[hinge][0], panel);
+    double at[2];
+    for (int c = 0; c < 2; ++c) // rounding is no place
+        at[c] = fabs(f->lattice.hinges[hinge][c]) < 1e-9 * f->radius ? 0 : f->lattice.hinges[hinge][c];
+    snprintf(text, 64, "panel %s (%.3g, %.3g on the sheet)", panel, at[0], at[1]);
+    return text;
+}
+
+static bool beside_rim(const ax_form* f, int hinge)
+{
+    bool beside = false;
+    for (int side = 0; side < 2; ++side)
+        for (int k = 0; k < 3 && f->holder[hinge][side] >= 0; ++k)
+            beside = beside || f->lattice.linkage.on_rim[f->lattice.linkage.triangles[f->holder[hinge][side]][k]];
+    return beside;
+}
+
+static bool rim_is_held(const ax_form* f)
+{
+    for (int k = 0; k < f->rim_count; ++k)
+        if (f->rim[k].kind != AX_RIM_FREE)
+            return true;
+    return false;
+}
+
+// Slack holes by the places where they are together: too much material there.
+static void find_slack(const ax_form* f, ax_form_report* r)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    double* off = AX_NEW(double, linkage->hole_count + 1);
+    int slack = 0;
+    for (int k = 0; k < linkage->hole_count; ++k) {
+        off[k] = f->opening[k] < slack_opening ? 1 - f->opening[k] : 0;
+        slack += off[k] > 0;
+    }
+    ax_region regions[MOST_PLACES];
+    int all = ax_form_regions(linkage->hole_count, linkage->hole_start, linkage->hole_hinges, linkage->hinge_count, off,
+                              MOST_PLACES, regions);
+    for (int k = 0; k < all && k < MOST_PLACES; ++k) {
+        char how[64] = "", place[64], number[32];
+        int hinge = linkage->hole_hinges[linkage->hole_start[regions[k].worst]];
+        if (k == 0)
+            snprintf(how, sizeof how, "%d of %d holes are slack. ", slack, linkage->hole_count);
+        snprintf(number, sizeof number, regions[k].count > 1 ? "%d holes, the slackest" : "a hole", regions[k].count);
+        tell(r, AX_SEVERITY_WARNING, "slack", 1 - regions[k].value, slack_opening,
+             "%sToo much material at %s: %s %.0f %% open. Paint smaller scale factors there, %stighten to load.", how,
+             name_place(f, hinge, place), number, 100 * (1 - regions[k].value),
+             beside_rim(f, hinge) && rim_is_held(f) ? "move the rim outwards, or " : "or ")
+            ->hinge = hinge;
+    }
+    ax_free(off);
+}
+
+// Panels that are pulled too hard, by the places where they are together: too little material there. Under a load of p per area a cap of
+// radius R pulls its edges by p R L / sqrt 3, and the multiplier of a panel is three times that: R that of the sheet is its measure.
+static void find_tight(const ax_form* f, ax_form_report* r)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    int count = linkage->triangle_count, tight = 0, *start = AX_NEW(int, count + 1);
+    double *off = AX_NEW(double, count), free_pull = sqrt(3) * ax_form_load_per_area(f) * f->radius;
+    for (int t = 0; t <= count; ++t)
+        start[t] = 3 * t;
+    for (int t = 0; t < count; ++t) {
+        off[t] = f->pull[t] > tight_multiplier ? f->pull[t] : 0;
+        tight += off[t] > 0;
+    }
+    ax_region regions[MOST_PLACES];
+    int all = ax_form_regions(count, start, linkage->triangles[0], linkage->hinge_count, off, MOST_PLACES, regions);
+    for (int k = 0; k < all && k < MOST_PLACES; ++k) {
+        char place[96], named[64], pull[96], number[32];
+        int panel = regions[k].worst, hinge = linkage->triangles[panel][0];
+        bool everywhere = tight > count / 2;
+        snprintf(place, sizeof place, everywhere ? "nearly everywhere, most at %s" : "at %s",
+                 name_place(f, hinge, named));
+        snprintf(number, sizeof number, regions[k].count > 1 ? "%d panels bear" : "a panel bears", regions[k].count);
+        if (ax_form_hangs(f))
+            snprintf(pull, sizeof pull, "up to %.0f times the pull of a sheet that bulges freely",
+                     regions[k].value / free_pull);
+        else
+            snprintf(pull, sizeof pull, "a pull of up to %.1f edges beyond what they reach", regions[k].value);
+        tell(r, AX_SEVERITY_WARNING, "tight", regions[k].value, tight_multiplier,
+             "Too little material %s: %s %s. Paint larger scale factors there%s.", place, number, pull,
+             !rim_is_held(f)                      ? ", or move what holds it closer"
+             : everywhere || beside_rim(f, hinge) ? ", or move the rim inwards"
+                                                  : "")
+            ->triangle = panel;
+        r->findings[r->finding_count - 1].hinge = hinge;
+    }
+    ax_free(start);
+    ax_free(off);
+}
+
+void ax_form_find_problems(ax_form* f, ax_form_report* r)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    double degree = 180 / AX_PI;
+    const char* unit = ax_unit_name(f->unit);
+    char place[64], other[16];
+    bool moved = f->dynamics.kind != AX_DYNAMICS_NONE;
+    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
+    double worst = fmax(r->flat_error, moved ? fmax(r->deployed_error, ax_form_hangs(f) ? r->simulated_error : 0) : 0);
+    if (worst > settled_error) {
+        int at = most_strained(f, x);
+        tell(r, AX_SEVERITY_FAILURE, "unsettled", worst, settled_error, "Edges are off by %.2g %%, most at %s: %s.",
+             100 * worst, name_place(f, linkage->triangles[at][0], place),
+             f->iterations ? "the request cannot be met, or needs more steps" : "not solved yet")
+            ->triangle = at;
+    }
+    if (r->overlap_pairs) {
+        int pair[1][2] = {{-1, -1}};
+        ax_measure_overlaps(linkage, (const double(*)[2])f->flat, AX_FORM_OVERLAP * r->edge, 1, pair);
+        char a[16], b[16];
+        ax_panel_name(linkage, pair[0][0], a);
+        ax_panel_name(linkage, pair[0][1], b);
+        tell(r, AX_SEVERITY_FAILURE, "overlap", r->overlap_pairs, 0,
+             "%d pairs of panels overlap in the flat state, %s and %s first.", r->overlap_pairs, a, b);
+        r->findings[r->finding_count - 1].triangle = pair[0][0];
+        r->findings[r->finding_count - 1].other = pair[0][1];
+    }
+    if (r->flipped)
+        tell(r, AX_SEVERITY_FAILURE, "flipped", r->flipped, 0,
+             "%d panels are turned over in the flat state, the first at %s.", r->flipped,
+             name_place(f, linkage->triangles[first_flipped(f)][0], place))
+            ->triangle = first_flipped(f);
+    if (r->mouth_min < f->mouth_min - 0.1 / degree)
+        tell(r, r->mouth_min < 0 ? AX_SEVERITY_FAILURE : AX_SEVERITY_WARNING, "mouth", r->mouth_min * degree,
+             f->mouth_min * degree,
+             "The smallest mouth is %.1f degrees, at %s; %.1f are asked: lower the scale factors there.",
+             r->mouth_min * degree, name_place(f, r->mouth_hinge, place), f->mouth_min * degree)
+            ->hinge = r->mouth_hinge;
+    if (r->scale_off_max > scale_gap) {
+        char name[16];
+        ax_panel_name(linkage, r->scale_off_triangle, name);
+        tell(r, AX_SEVERITY_WARNING, "scale", r->scale_off_max, scale_gap,
+             "Scale factors come out up to %.2f off what was asked, most at panel %s (asked %.2f, realised %.2f).",
+             r->scale_off_max, name, f->prescribed[r->scale_off_triangle], f->realised[r->scale_off_triangle])
+            ->triangle = r->scale_off_triangle;
+    }
+    if (moved) {
+        find_slack(f, r);
+        find_tight(f, r);
+    }
+    int fold[2], folds = moved ? ax_form_folds(f, x, fold) : 0;
+    if (folds) {
+        ax_panel_name(linkage, fold[1], other);
+        tell(r, AX_SEVERITY_WARNING, "folded", folds, 0,
+             "%d pairs of neighbouring panels are folded onto each other, the first at %s with %s.", folds,
+             name_place(f, linkage->triangles[fold[0]][0], place), other);
+        r->findings[r->finding_count - 1].triangle = fold[0];
+        r->findings[r->finding_count - 1].other = fold[1];
+    }
+    for (int k = 0; k < r->held_count; ++k) {
+        // under the load alone, what does not support is as near as a simulated state is to be to its design
+        bool yields = ax_form_hangs(f) && !ax_form_shares(f) && !r->held[k].supports;
+        double gap = (yields ? loaded_gap : rim_gap) * r->edge;
+        if (r->held[k].residual > gap && strcmp(r->held[k].kind, "fairness") != 0)
+            tell(r, AX_SEVERITY_WARNING, "held", r->held[k].residual, gap,
+                 "'%s' (%s) is missed by up to %.3g %s, most at %s.", r->held[k].name, r->held[k].kind,
+                 r->held[k].residual, unit, name_place(f, r->held[k].hinge, place))
+                ->hinge = r->held[k].hinge;
+    }
+    if (r->curvature_max > 2 * AX_PI)
+        tell(r, AX_SEVERITY_WARNING, "overhang", r->curvature_max, 2 * AX_PI,
+             "The painted factors sum to %.0f degrees of curvature, above 360: fully open the surface turns over.",
+             r->curvature_max * degree);
+    else if (moved && r->overhang > 0)
+        tell(r, AX_SEVERITY_NOTE, "overhang", r->overhang, 0, "%.1f %% of the panels look down: no height field.",
+             100 * r->overhang);
+    for (int k = 0; k < f->underlay_count; ++k) {
+        int at;
+        double least = underlay_distance(f, k, &at);
+        if (least < f->clearances[k])
+            tell(r, AX_SEVERITY_FAILURE, "clearance", least, f->clearances[k],
+                 "The shell comes within %.3g %s of '%s'; %.3g are asked.", least, unit, f->underlay_names[k],
+                 f->clearances[k])
+                ->triangle = at;
+    }
+    for (int k = 1; k < r->finding_count; ++k) { // the worst of a kind stays first
+        ax_finding finding = r->findings[k];
+        int at = k;
+        for (; at > 0 && by_severity(&r->findings[at - 1], &finding) > 0; --at)
+            r->findings[at] = r->findings[at - 1];
+        r->findings[at] = finding;
+    }
+}
