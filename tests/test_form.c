@@ -642,7 +642,8 @@ static void unusable_requests_are_refused(void** state)
     ax_form_free(form);
 }
 
-// Settled under load is at rest: more of it, from there, does not move the form, with room for it and without.
+// Settled under load is at rest: settling again, from there, does not move the form, with room for it and without. Projective steps
+// alone do not either where there is room; where not, a slack part has several places to rest.
 static void a_loaded_form_rests(void** state)
 {
     (void)state;
@@ -657,13 +658,15 @@ static void a_loaded_form_rests(void** state)
         double(*before)[3] = ax_copy(view.simulated, (size_t)n, sizeof *before), most = 0, edge = 0;
         for (int t = 0; t < view.linkage->triangle_count; ++t)
             edge += view.prescribed[t] * view.spacing / 2 / view.linkage->triangle_count;
-        ax_error error;
-        assert_int_equal(ax_form_settle(form, 3000, NULL, &error), AX_OK); // projective steps alone
-        settle(form);
-        view = ax_form_look(form);
-        for (int h = 0; h < n; ++h)
-            most = fmax(most, ax_distance3(before[h], view.simulated[h]));
-        assert_at_most(most, 0.01 * edge);
+        for (int again = 0; again < 2 - slack; ++again) {
+            if (again > 0)
+                assert_int_equal(ax_form_settle(form, 3000, NULL, NULL), AX_OK);
+            settle(form);
+            view = ax_form_look(form);
+            for (int h = 0; h < n; ++h)
+                most = fmax(most, ax_distance3(before[h], view.simulated[h]));
+            assert_at_most(most, 0.01 * edge);
+        }
         ax_free(before);
         ax_form_free(form);
     }

@@ -4,8 +4,10 @@
 #include "base/random.h"
 #include "constraint/place.h"
 #include "linalg/order.h"
+#include "solver/extrapolate.h"
 #include "support/test.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -399,6 +401,47 @@ static void panels_report_an_indefinite_matrix_and_stay_usable(void** state)
     free_grid(&g);
 }
 
+// z -> limit + M (z - limit) with three modes: five states tell the limit, from which the slowest still is four fifths away.
+static void the_limit_of_slow_modes_is_found(void** state)
+{
+    (void)state;
+    enum { SIZE = 500, STATES = 5, MODES = 3 };
+    static const double rate[MODES] = {0.95, 0.8, -0.5};
+    ax_random random = {11};
+    double *limit = AX_NEW(double, SIZE), *mode[MODES];
+    for (int k = 0; k < SIZE; ++k)
+        limit[k] = ax_random_uniform(&random, -1, 1);
+    for (int m = 0; m < MODES; ++m) {
+        mode[m] = AX_NEW(double, SIZE);
+        for (int k = 0; k < SIZE; ++k)
+            mode[m][k] = ax_random_uniform(&random, -1, 1);
+    }
+    ax_extrapolation* e = ax_extrapolation_make(SIZE, STATES);
+    for (int turn = 0; turn < 2; ++turn) { // the second time, the first state drops the five
+        for (int i = 0; i < STATES; ++i) {
+            double* z = ax_extrapolation_next(e);
+            for (int k = 0; k < SIZE; ++k) {
+                z[k] = limit[k];
+                for (int m = 0; m < MODES; ++m)
+                    z[k] += pow(rate[m], turn * STATES + i) * mode[m][k];
+            }
+            assert_ptr_equal(ax_extrapolation_last(e), z);
+            assert_int_equal(ax_extrapolation_limit(e) != NULL, i == STATES - 1);
+        }
+        const double* found = ax_extrapolation_limit(e);
+        assert_non_null(found);
+        for (int k = 0; k < SIZE; ++k)
+            assert_near(found[k], limit[k], 5e-3);
+    }
+    for (int i = 0; i < STATES; ++i) // what stands still shows no limit
+        memcpy(ax_extrapolation_next(e), limit, SIZE * sizeof *limit);
+    assert_null(ax_extrapolation_limit(e));
+    ax_extrapolation_free(e);
+    for (int m = 0; m < MODES; ++m)
+        ax_free(mode[m]);
+    ax_free(limit);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -414,6 +457,7 @@ int main(void)
         cmocka_unit_test(panels_solve_what_was_factorised),
         cmocka_unit_test(places_that_tell_nothing_apart_still_order),
         cmocka_unit_test(panels_report_an_indefinite_matrix_and_stay_usable),
+        cmocka_unit_test(the_limit_of_slow_modes_is_found),
     };
     return cmocka_run_group_tests_name("solver", tests, NULL, NULL);
 }

@@ -8,10 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-// Residuals of states that lie within 0.005 of an edge of where they would come to rest.
-static const double enough = 1e-4;
+// Residuals of states that lie within 0.001 of an edge of where they would come to rest; where a part is slack, 1e-4 left 0.06.
+static const double enough = 1e-6;
 // Small forms are worth a search, large ones a few steps.
-enum { LEAST_STEPS = 4, MOST_STEPS = 15, PANELS_OF_MOST = 3000 };
+enum { LEAST_STEPS = 8, MOST_STEPS = 25, PANELS_OF_MOST = 3000 };
 
 static bool hold(ax_hold* holds, int h, ax_hold with)
 {

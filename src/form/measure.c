@@ -436,13 +436,16 @@ static void measure_overhang(const ax_form* f, ax_form_report* r)
     ax_free(curvature);
 }
 
-bool ax_form_left_over(const ax_form* f)
+bool ax_form_turns_over(const ax_form* f)
 {
-    if (share_down(f, (const double(*)[3])f->deployed) < 0.02)
-        return false;
     ax_form_report painted = {0};
     measure_overhang(f, &painted);
-    return painted.curvature_max < 2 * AX_PI;
+    return painted.curvature_max >= 2 * AX_PI;
+}
+
+bool ax_form_left_over(const ax_form* f)
+{
+    return f->turned && share_down(f, (const double(*)[3])f->deployed) >= 0.02 && !ax_form_turns_over(f);
 }
 
 void ax_form_measure(ax_form* f, ax_form_report* r)

@@ -2,6 +2,7 @@
 #include "form/state.h"
 
 #include "base/vec.h"
+#include "solver/extrapolate.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,10 +13,15 @@ enum {
     SHAPE_ITERATIONS = 650,
     LOAD_ITERATIONS = 400,
     MOST_ITERATIONS = 2000,
-    REST_CHECK = 25
+    REST_CHECK = 25,
+    BLOCK = 15, // iterations between two states of which the limit is taken
+    BLOCKS = 5, // until only slow modes are left
+    STATES = 5,
+    STALLED = 450 // iterations without better edges: they cannot be right
 };
-static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 1e-3, good_error = 5e-3;
-static const char loading[] = "Loading the sheet";
+static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 2e-3, good_error = 5e-3, balance_error = 0.03;
+static const double block_step = 2e-4, worse = 4; // in lattice spacings; times the step before
+static const char shaping[] = "Shaping the sheet", loading[] = "Loading the sheet";
 
 // While a fresh sheet opens, its load leans on it, spread evenly: what lies between a painted dome and a rim with too little room for it
 // opens upwards or downwards with equal ease, and as fairness has it, against the load. Panels keep their sizes meanwhile, so that
@@ -81,10 +87,14 @@ static void forget(snapshot* s)
     ax_free(s->multipliers);
 }
 
-// Iterates one of the two until its edges are right within `error` and it rests, or for `least` iterations, and on to `most` while edges
-// are off. False if cancelled.
-static bool run(ax_form* f, bool shape, int least, int most, double error, const ax_progress* progress,
-                const char* stage, double lo, double hi)
+static double shape_error(const ax_form* f)
+{
+    return fmax(ax_form_flat_error(f), ax_form_shares(f) ? ax_form_deployed_error(f) : 0);
+}
+
+// Iterates one of the two until its edges are right and it rests, or for `least` iterations, and on to `most` while edges are off.
+// False if cancelled.
+static bool run(ax_form* f, bool shape, int least, int most, const ax_progress* progress, double lo, double hi)
 {
     for (int done = 0; done < most;) {
         int count = REST_CHECK < most - done ? REST_CHECK : most - done;
@@ -95,27 +105,90 @@ static bool run(ax_form* f, bool shape, int least, int most, double error, const
             ax_form_iterate_hang(f, count);
         done += count;
         f->iterations += count;
-        double off = shape ? fmax(ax_form_flat_error(f), ax_form_shares(f) ? ax_form_deployed_error(f) : 0)
-                           : ax_form_simulated_error(f);
-        if (!ax_progress_report(progress, stage, lo + (hi - lo) * done / most, off))
+        double off = shape ? shape_error(f) : ax_form_simulated_error(f);
+        if (!ax_progress_report(progress, shape ? shaping : loading, lo + (hi - lo) * done / most, off))
             return false;
-        bool near = off < error && (error > rest_error || f->scaled_step < rest_step);
-        if (near || (done >= least && off < good_error))
+        if ((off < rest_error && f->scaled_step < rest_step) || (done >= least && off < good_error))
             return true;
     }
     return true;
+}
+
+// What the shape's iterations hand from one to the next: places of both states and multipliers.
+static size_t shape_size(const ax_form* f)
+{
+    return 5 * (size_t)f->lattice.linkage.hinge_count + ax_solver_multiplier_count(f->shape);
+}
+
+static void take_shape(const ax_form* f, double* z)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    memcpy(z, f->flat, n * sizeof *f->flat);
+    memcpy(z + 2 * n, f->deployed, n * sizeof *f->deployed);
+    ax_solver_get_multipliers(f->shape, z + 5 * n);
+}
+
+static void put_shape(ax_form* f, const double* z)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    memcpy(f->flat, z, n * sizeof *f->flat);
+    memcpy(f->deployed, z + 2 * n, n * sizeof *f->deployed);
+    ax_solver_set_multipliers(f->shape, z + 5 * n);
+}
+
+// Both states of the shape. Edges are right after a hundred iterations or two; a few slow modes, of which the form keeps a tenth in
+// thirty more, are what a limit of states some iterations apart takes at once. False if cancelled.
+static bool shape_sheet(ax_form* f, const ax_progress* progress, double hi)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    ax_extrapolation* states = ax_extrapolation_make(shape_size(f), STATES);
+    double(*was)[3] = ax_copy(f->deployed, n, sizeof *was), before = INFINITY, best = INFINITY;
+    int bettered = 0;
+    bool going = true, jumped = false;
+    for (int done = 0, blocks = 0; done < MOST_ITERATIONS && going; done += BLOCK) {
+        ax_form_iterate_shape(f, BLOCK);
+        f->iterations += BLOCK;
+        double moved = 0, off = shape_error(f);
+        for (size_t h = 0; h < n; ++h)
+            moved = fmax(moved, ax_distance3(was[h], f->deployed[h]) / f->lattice.spacing);
+        going = ax_progress_report(progress, shaping, hi * done / MOST_ITERATIONS, off);
+        if (off < 0.95 * best)
+            best = off, bettered = done;
+        if ((off < rest_error && moved < block_step) ||
+            (done >= SHAPE_ITERATIONS && (off < good_error || done - bettered >= STALLED)))
+            break;
+        if (jumped && moved > worse * before)
+            put_shape(f, ax_extrapolation_last(states));
+        jumped = false;
+        if (++blocks > BLOCKS) {
+            take_shape(f, ax_extrapolation_next(states));
+            const double* limit = ax_extrapolation_limit(states);
+            if (limit) {
+                put_shape(f, limit);
+                jumped = true;
+                before = moved;
+                blocks = BLOCKS - 1; // what the jump stirs up dies down first
+            }
+        }
+        memcpy(was, f->deployed, n * sizeof *was);
+    }
+    ax_free(was);
+    ax_extrapolation_free(states);
+    return going;
 }
 
 // Near the rest and then to it. False if cancelled.
 static bool come_to_rest(ax_form* f, const ax_progress* progress, double lo, double hi, bool* balanced)
 {
     ax_progress_part part;
+    const ax_progress* rest = ax_progress_within(&part, progress, (lo + hi) / 2, hi);
+    double load = ax_form_load_per_area(f);
     *balanced = false;
-    if (!run(f, false, LOAD_ITERATIONS, LOAD_ITERATIONS, near_error, progress, loading, lo, (lo + hi) / 2))
-        return false;
-    return ax_form_simulated_error(f) > good_error ||
-           ax_form_balance(f, ax_form_load_per_area(f), ax_progress_within(&part, progress, (lo + hi) / 2, hi),
-                           balanced);
+    // projective steps stray from where a slack part lies to where it might lie too
+    if (ax_form_simulated_error(f) < near_error && (!ax_form_balance(f, load, rest, balanced) || *balanced))
+        return *balanced;
+    return run(f, false, LOAD_ITERATIONS, LOAD_ITERATIONS, progress, lo, (lo + hi) / 2) &&
+           (ax_form_simulated_error(f) > balance_error || ax_form_balance(f, load, rest, balanced));
 }
 
 // For given iterations; 0: until forces are in balance. From where it is, so that slack parts stay as they lie; else from the open
@@ -123,24 +196,23 @@ static bool come_to_rest(ax_form* f, const ax_progress* progress, double lo, dou
 static bool load_sheet(ax_form* f, int iterations, const ax_progress* progress)
 {
     if (iterations > 0)
-        return run(f, false, iterations, iterations, rest_error, progress, loading, 0.5, 1);
+        return run(f, false, iterations, iterations, progress, 0.5, 1);
     bool balanced;
     if (!come_to_rest(f, progress, 0.5, 0.65, &balanced))
         return false;
+    if (ax_form_shares(f) && shape_error(f) > good_error) // nor can it be right under load
+        return true;
     if (!balanced && ax_form_shares(f)) {
         memcpy(f->simulated, f->deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
         ax_solver_reset_multipliers(f->hang);
         if (!come_to_rest(f, progress, 0.65, 0.8, &balanced))
             return false;
     }
-    return balanced || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, rest_error, progress, loading, 0.8, 1);
+    return balanced || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, progress, 0.8, 1);
 }
 
 ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress, ax_error* error)
 {
-    int least = ax_form_shares(f) ? SHAPE_ITERATIONS : FLAT_ITERATIONS, most = MOST_ITERATIONS;
-    if (iterations > 0)
-        least = most = iterations;
     int n = f->lattice.linkage.hinge_count;
     ax_status held = ax_form_hangs(f) ? ax_form_check_support(f, error) : AX_OK;
     if (held != AX_OK)
@@ -172,11 +244,17 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
             lean(f, false);
         ax_form_allow_give(f, true);
     }
-    bool going = run(f, true, least, most, rest_error, progress, "Shaping the sheet", 0, ax_form_hangs(f) ? 0.5 : 1);
+    double half = ax_form_hangs(f) ? 0.5 : 1;
+    bool going = iterations == 0 && ax_form_shares(f)
+                     ? shape_sheet(f, progress, half)
+                     : run(f, true, iterations > 0 ? iterations : FLAT_ITERATIONS,
+                           iterations > 0 ? iterations : MOST_ITERATIONS, progress, 0, half);
     ax_form_measure_sides(f);
     if (going && ax_form_hangs(f))
         going = load_sheet(f, iterations, progress);
-    if (!going)
+    if (going)
+        f->turned = ax_form_turns_over(f);
+    else
         restore(f, &before);
     forget(&before);
     f->exact = false;

@@ -66,6 +66,7 @@ struct ax_form {
     double (*side)[3]; // edge k of each panel, opposite corner k: what the load pass keeps
     double growth;
     bool exact, settled;
+    bool turned; // what was painted when it last settled turned over
     unsigned revision;
     int iterations;
     double scaled_step; // largest move of the last iteration over the spacing
@@ -195,7 +196,9 @@ double ax_form_simulated_error(const ax_form* form);
 void ax_form_find_problems(ax_form* form, ax_form_report* report);
 // Pairs of neighbouring panels whose normals oppose each other.
 int ax_form_folds(const ax_form* form, const double (*x)[3], int first[2]); // panels of the first; NULL: not wanted
-// The deployed state is turned over, and what is painted is not: it is left from what was painted before.
+// What is painted turns over: it sums to more than 2 pi of curvature.
+bool ax_form_turns_over(const ax_form* form);
+// The deployed state is turned over, and what is painted no longer is: it is left from what was painted before.
 bool ax_form_left_over(const ax_form* form);
 // Mean height of the deployed hinges above the rim's.
 double ax_form_bulge(const ax_form* form);

@@ -237,6 +237,7 @@ static void body(stream* s, ax_form* f)
     REAL(s, f->growth);
     flag(s, &f->exact);
     flag(s, &f->settled);
+    flag(s, &f->turned);
     FIELD(s, f->revision);
     FIELD(s, f->iterations);
 
