@@ -8,9 +8,9 @@ import { chromium } from "playwright-core";
 const command = process.env.AUXSHELL;
 
 /** As on a computer without a graphics card: WebGL in software, and the page put together without it. */
-export function launch(executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium") {
+export function launch() {
     return chromium.launch({
-        executablePath,
+        executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
         args: ["--use-angle=swiftshader-webgl", "--enable-unsafe-swiftshader", "--no-sandbox", "--disable-dev-shm-usage"],
     });
 }
