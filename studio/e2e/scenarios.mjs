@@ -668,13 +668,14 @@ export const scenarios = {
     async "at 200 % and on small screens no figure is cut, and the legend leaves the shell free"(browser) {
         await withStudio(browser, bowl, async (hand) => {
             const { page } = hand;
+            await hand.key("b");
             for (const [width, height] of [[640, 360], [720, 450], [960, 540], [1280, 720], [1440, 900], [1920, 1080]]) {
                 await page.setViewportSize({ width, height });
                 for (const mode of ["Alt+1", "Alt+2"]) {
                     await hand.key(mode);
                     await page.waitForTimeout(150);
                     const { cut, share } = await page.evaluate(() => {
-                        const leaves = [...document.querySelectorAll(".checks *, .legend *, .view-title *, .timeline *")].filter((e) => e.children.length === 0 && e.clientWidth > 0);
+                        const leaves = [...document.querySelectorAll(".checks *, .legend *, .view-title *, .timeline *, .form-row .segments")].filter((e) => (e.children.length === 0 || e.matches(".segments")) && e.clientWidth > 0);
                         const legend = document.querySelector(".legend").getBoundingClientRect();
                         const view = document.querySelector(".views").getBoundingClientRect();
                         return { cut: leaves.filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent), share: (legend.width * legend.height) / (view.width * view.height) };
@@ -759,6 +760,41 @@ export const scenarios = {
                 return [auxshell.stage.value.shown[0], deployed.orbit.preset, deployed.orbit.pose.projection];
             }), ["deployed", "front", "parallel"]);
         }, { reducedMotion: "reduce" });
+    },
+
+    async "videos hold every picture at its time; recording is cancelled"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            const make = async (name) => {
+                await hand.key("Control+e");
+                await page.getByRole("radio", { name }).click();
+                await page.getByRole("dialog").getByRole("button", { name: /^(Export|Record)/ }).click();
+            };
+            const download = page.waitForEvent("download", { timeout: 120000 });
+            await make(/^Deployment/);
+            const file = await download;
+            assert.match(file.suggestedFilename(), /deployment\.webm$/);
+            const states = await page.evaluate(() => auxshell.motion.value.frames.length);
+            const player = await browser.newPage();
+            const seen = await player.evaluate(async (bytes) => {
+                const video = document.createElement("video");
+                video.muted = true;
+                video.src = URL.createObjectURL(new Blob([Uint8Array.from(bytes)], { type: "video/webm" }));
+                await new Promise((resolve, reject) => ((video.onloadeddata = resolve), (video.onerror = () => reject(new Error(video.error.message)))));
+                const { duration, videoWidth } = video;
+                await new Promise((resolve) => ((video.onended = resolve), video.play()));
+                return { duration, videoWidth, shown: video.getVideoPlaybackQuality().totalVideoFrames };
+            }, [...readFileSync(await file.path())]);
+            await player.close();
+            assert.ok(Math.abs(seen.duration - 6) < 0.2 && seen.videoWidth > 200, JSON.stringify(seen));
+            assert.ok(seen.shown >= states - 1, `${seen.shown} pictures of ${states} states`);
+            await make(/^Turntable/);
+            await page.getByText(/^Recording, /).waitFor({ state: "attached" }); // said by a ring alone in a narrow window
+            await page.waitForFunction(() => Math.abs(auxshell.stage.value.views.deployed.orbit.pose.azimuth + 62) > 1); // it turns
+            await page.getByRole("button", { name: "Cancel", exact: true }).click();
+            await page.waitForFunction(() => !document.querySelector(".bar .chip")?.textContent.startsWith("Recording"));
+            assert.equal(await page.evaluate(() => auxshell.stage.value.views.deployed.orbit.pose.azimuth), -62, "and is back");
+        }, { viewport: { width: 900, height: 560 }, reducedMotion: "reduce" });
     },
 
     async "by touch: one finger selects, turns and paints, two pan and zoom"(browser) {

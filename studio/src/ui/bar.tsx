@@ -2,7 +2,7 @@ import { useSignal } from "@preact/signals";
 import { commandNamed, finish } from "../state/commands";
 import { connection, documentState, making, progress, readOnly, reconnect, report, status } from "../state/session";
 import { darkTheme, theme } from "../state/settings";
-import { recording } from "../state/video";
+import { cancelRecording, recording } from "../state/video";
 import { type Mode, dialog, drawerOpen, mode, page } from "../state/view";
 import { Button, Segments, Tool } from "./controls";
 import { number, time } from "./format";
@@ -25,7 +25,13 @@ export function SolverChip() {
                 {!making.value && <Button small onClick={commandNamed("cancel").run}>Cancel</Button>}
             </span>
         );
-    if (recording.value) return <span class="chip plain" role="status"><i class="ring" /><span>Recording</span></span>;
+    if (recording.value)
+        return (
+            <span class="row">
+                <span class="chip plain"><i class="ring" /><span>Recording, {number(100 * recording.value.share, 0)} %</span></span>
+                <Button small onClick={cancelRecording}>Cancel</Button>
+            </span>
+        );
     if (!s) return null;
     if (s.solver !== "idle") return <span class="chip plain" role="status"><i class="ring" /><span>{s.words}</span></span>;
     const failures = report.value?.checks.filter((c) => c.severity === "failure") ?? [];

@@ -13,7 +13,7 @@ const capital = (s: string) => s.charAt(0).toUpperCase() + s.slice(1);
 /** `edge` is the panel edge L in the document's unit. */
 export function checkWords(c: Check, unit: LengthUnit, edge: number): CheckWords {
     const v = c.value;
-    const limit = capital(c.limit.replace("mean curvature above", "mean curvature >").replace(/ on \d+ (of \d+ )?panels.*$/, "").replace(/ deg\b/, "°").replace(/^([\d.]+) L\b/, (_, n: string) => `Limit ${length(Number(n) * edge, unit)}`).replace(/^([\d.e-]+) (mm|cm|m)$/, (_, n: string, u: string) => `Limit ${length(Number(n), u as LengthUnit)}`));
+    const limit = capital(c.limit.replace("mean curvature above", "mean curvature >").replace(/ on \d+ (of \d+ )?panels.*$/, "").replace(/^1 to 2, asked within/, "off by up to").replace(/ deg\b/, "°").replace(/^([\d.]+) L\b/, (_, n: string) => `Limit ${length(Number(n) * edge, unit)}`).replace(/^([\d.e-]+) (mm|cm|m)$/, (_, n: string, u: string) => `Limit ${length(Number(n), u as LengthUnit)}`));
     const words = (question: string, answer: string | null): CheckWords => ({ question, answer: answer ?? capital(c.answer), limit });
     switch (c.key) {
         case "scale": return words("Scale factor λ", null);

@@ -194,10 +194,11 @@ export function Slider({ value, lo, hi, step, name, onChange, onCommit, text }: 
 }
 
 /** A label with a slider and a number, a number alone, or whatever else is given. */
-export function Row({ label, children, title }: { label: string; title?: string; children: (id: string) => ComponentChildren }) {
+/** `short`: the label takes no more room than it needs. */
+export function Row({ label, children, title, short }: { label: string; title?: string; short?: boolean; children: (id: string) => ComponentChildren }) {
     const id = useId();
     return (
-        <div class="form-row">
+        <div class={`form-row${short ? " short" : ""}`}>
             <label class="label" for={id} title={title ?? label}>{label}</label>
             <div>{children(id)}</div>
         </div>

@@ -77,7 +77,7 @@ function BrushPanel() {
                 <NumberRow label="Radius" unit="length" value={brushRadius()} documentUnit={unit()} lo={1e-6} slider={[0.02 * sheetRadius(), sheetRadius()]} onChange={(v) => setArgument("paint", "radius", Number(v.toPrecision(3)))} />
                 <NumberRow label="Strength" unit="%" value={100 * brushStrength()} documentUnit={unit()} lo={1} hi={100} slider={[1, 100]} onChange={(v) => setArgument("paint", "strength", v / 100)} />
                 {falloff && <Row label="Falloff" title={falloff.doc}>{(id) => <Choice id={id} value={String(args.falloff ?? falloff.default)} options={falloff.choices.map((c) => ({ value: c, title: c.charAt(0).toUpperCase() + c.slice(1) }))} onChange={(v) => setArgument("paint", "falloff", v)} />}</Row>}
-                <Row label="Mode">{() => <Segments fill name="Mode" value={mode} options={[{ value: "set", title: "Set" }, { value: "add", title: "Add" }, { value: "subtract", title: "Lower" }, { value: "smooth", title: "Smooth" }]}
+                <Row label="Mode" short>{() => <Segments fill name="Mode" value={mode} options={[{ value: "set", title: "Set" }, { value: "add", title: "Add" }, { value: "subtract", title: "Lower" }, { value: "smooth", title: "Smooth" }]}
                     onChange={(m) => {
                         setArgument("paint", "mode", m);
                         setArgument("paint", "value", undefined);
