@@ -794,7 +794,7 @@ export const scenarios = {
             await page.getByRole("button", { name: "Cancel", exact: true }).click();
             await page.waitForFunction(() => !document.querySelector(".bar .chip")?.textContent.startsWith("Recording"));
             assert.equal(await page.evaluate(() => auxshell.stage.value.views.deployed.orbit.pose.azimuth), -62, "and is back");
-        }, { viewport: { width: 900, height: 560 }, reducedMotion: "reduce" });
+        }, { viewport: { width: 700, height: 450 }, reducedMotion: "reduce" });
     },
 
     async "by touch: one finger selects, turns and paints, two pan and zoom"(browser) {
