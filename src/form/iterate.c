@@ -8,11 +8,6 @@
 
 enum { RESIZE_EVERY = 25 };
 
-void ax_form_twist(ax_form* f)
-{
-    ax_lattice_twist(&f->lattice, f->prescribed, f->flat);
-}
-
 // The sheet's panel centres, turned and shifted to where the flat state has them, grown only if collisions may grow it: the targets
 // that choose among the sheet's many flat states the one whose scale factors are the prescribed ones.
 static void aim_centres(ax_form* f)

@@ -194,6 +194,8 @@ double ax_form_deployed_error(const ax_form* form);
 double ax_form_simulated_error(const ax_form* form);
 // Adds to a report, which holds the figures, what they tell people.
 void ax_form_find_problems(ax_form* form, ax_form_report* report);
+// Of a panel in a state, twice its area long.
+void ax_form_panel_normal(const ax_form* form, int triangle, const double (*x)[3], double normal[3]);
 // Pairs of neighbouring panels whose normals oppose each other.
 int ax_form_folds(const ax_form* form, const double (*x)[3], int first[2]); // panels of the first; NULL: not wanted
 // What is painted turns over: it sums to more than 2 pi of curvature.

@@ -128,9 +128,6 @@ static inline int live_lanes(const elements* e, int block)
     return left < AX_W ? left : AX_W;
 }
 
-// Places of the points of a block, one lane each.
-void ax_gather(const ax_solver* s, const elements* e, int block, ax_lane3* x);
-
 // Makes room for `kept`.
 void ax_keep(ax_solver* s);
 

@@ -30,7 +30,8 @@ static inline void collect(const ax_lane3* x, int lane, double scale, v4 p[4])
     }
 }
 
-void ax_gather(const ax_solver* s, const elements* e, int block, ax_lane3* x)
+// Places of the points of a block, one lane each.
+static void gather(const ax_solver* s, const elements* e, int block, ax_lane3* x)
 {
     const int* index = e->index + (size_t)block * (size_t)e->points_each * AX_W;
     for (int k = 0; k < e->points_each; ++k, index += AX_W)
@@ -184,7 +185,7 @@ static void project_chunk(void* context, int chunk)
         if (g->type->pattern == AX_ROWS_EDGES)
             gather_edges(s, &g->e, b, y);
         else {
-            ax_gather(s, &g->e, b, x);
+            gather(s, &g->e, b, x);
             form_rows(g, (const ax_lane3*)x, y);
         }
         ax_lane3* dual = g->dual + (size_t)b * (size_t)rows;
@@ -237,7 +238,7 @@ static void act_chunk(void* context, int chunk)
     double energy = 0;
     for (int b = chunk * CHUNK; b < end; ++b) {
         ax_lane potential;
-        ax_gather(s, &c->e, b, x);
+        gather(s, &c->e, b, x);
         f->type->act(f->value, c->area[b], c->e.points_each, (const ax_lane3*)x, out, potential);
         write_rows(s, &c->e, b, (const ax_lane3*)out, s->load_factor);
         for (int l = 0; l < live_lanes(&c->e, b); ++l)
@@ -382,7 +383,7 @@ void ax_sum_dead_loads(ax_solver* s)
             const elements* e = &f->classes[c].e;
             for (int b = 0; b < e->blocks; ++b) {
                 ax_lane potential;
-                ax_gather(s, e, b, x);
+                gather(s, e, b, x);
                 f->type->act(f->value, f->classes[c].area[b], e->points_each, (const ax_lane3*)x, out, potential);
                 for (int l = 0; l < live_lanes(e, b); ++l)
                     for (int p = 0; p < e->points_each; ++p) {
@@ -401,7 +402,7 @@ void ax_pin(ax_solver* s)
         const group* g = s->groups + k;
         for (int b = 0; g->type->eliminated && b < g->e.blocks; ++b) {
             ax_lane3 x, p;
-            ax_gather(s, &g->e, b, &x);
+            gather(s, &g->e, b, &x);
             g->type->project((const ax_lane*)(g->parameter + (size_t)b * (size_t)g->type->lanes), g->place, 1,
                              (const ax_lane3*)&x, &p);
             for (int l = 0; l < live_lanes(&g->e, b); ++l) {

@@ -264,11 +264,6 @@ void ax_solver_set_load_value(ax_solver* s, int k, int at, double value)
     s->dead_changed = s->dead_changed || !s->loads[k].type->follows;
 }
 
-double ax_solver_get_load_value(const ax_solver* s, int k, int at)
-{
-    return s->loads[k].value[at];
-}
-
 void ax_solver_set_load(ax_solver* s, const double (*force)[3])
 {
     s->changed = true;

@@ -47,7 +47,6 @@ void ax_solver_get_places(const ax_solver* solver, double (*places)[3]);
 int ax_solver_add_load(ax_solver* solver, const ax_load_type* type, int loops, const int* start, const int* points);
 // Value `at` (a parameter's offset in the type's table).
 void ax_solver_set_load_value(ax_solver* solver, int load, int at, double value);
-double ax_solver_get_load_value(const ax_solver* solver, int load, int at);
 // Measures the areas of the loops anew, from places of the rest state, or from the present ones (NULL).
 void ax_solver_measure_load(ax_solver* solver, int load, const double (*places)[3]);
 // Point forces, one per point, NULL: none.
