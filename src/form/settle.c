@@ -9,6 +9,7 @@
 
 enum {
     FRESH_ITERATIONS = 100,
+    LEAN_ITERATIONS = 200,
     FLAT_ITERATIONS = 400,
     SHAPE_ITERATIONS = 650,
     LOAD_ITERATIONS = 400,
@@ -24,8 +25,8 @@ static const double block_step = 2e-4, worse = 4; // in lattice spacings; times 
 static const char shaping[] = "Shaping the sheet", loading[] = "Loading the sheet";
 
 // While a fresh sheet opens, its load leans on it, spread evenly: what lies between a painted dome and a rim with too little room for it
-// opens upwards or downwards with equal ease, and as fairness has it, against the load. Panels keep their sizes meanwhile, so that
-// nothing yields to it.
+// opens upwards or downwards with equal ease, and as fairness has it, against the load. Panels keep their sizes at first, so that nothing
+// yields to it; it leans on until they have given way, else what is left over folds as the lattice has it.
 static void lean(ax_form* f, bool on)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
@@ -240,9 +241,11 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
         if (leans)
             lean(f, true);
         ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : FRESH_ITERATIONS);
-        if (leans)
-            lean(f, false);
         ax_form_allow_give(f, true);
+        if (leans) {
+            ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : LEAN_ITERATIONS);
+            lean(f, false);
+        }
     }
     double half = ax_form_hangs(f) ? 0.5 : 1;
     bool going = iterations == 0 && ax_form_shares(f)
