@@ -81,6 +81,15 @@ static void print_forces(const ax_cut_plan* p, FILE* out)
         fprintf(out, "                  %d of %d hinges are loaded beyond it\n", over, p->hinge_count);
 }
 
+static void print_folds(const ax_cut_plan* p, FILE* out)
+{
+    if (p->folds)
+        fprintf(out,
+                "  Folds           %d pairs of neighbours lie folded onto each other when open, %s and %s first:\n"
+                "                  no joint bends so far. Paint smaller scale factors there, or tighten to load\n",
+                p->folds, p->panels[p->fold[0]].name, p->panels[p->fold[1]].name);
+}
+
 static void print_clearance(const ax_cut_plan* p, FILE* out)
 {
     static const char* const frames[] = {"flat", "deployed", "simulated"};
@@ -140,6 +149,7 @@ void fabricate_print(const ax_cut_plan* p, FILE* out)
         fprintf(out, "  Labels          %d panels are too small for one\n", p->labels_dropped);
     print_forces(p, out);
     print_clearance(p, out);
+    print_folds(p, out);
 }
 
 void fabricate_list(FILE* out)

@@ -559,6 +559,38 @@ static void clearance_is_what_turning_the_panels_finds(void** state)
     }
 }
 
+// A rim panel that is turned over on the line of its two neighbours lies on both.
+static void folded_neighbours_are_told(void** state)
+{
+    (void)state;
+    const ax_linkage* linkage = &sample.linkage;
+    double(*x)[3] = sample.simulated ? sample.simulated : sample.deployed;
+    ax_fabricate_options o = choose("pin", "plywood-3", NULL, 0);
+    o.frames = 0;
+    ax_cut_plan plan = make(&sample, &o);
+    assert_int_equal(plan.folds, 0);
+    assert_int_equal(plan.fold[0], -1);
+    ax_cut_plan_free(&plan);
+    int panel = -1, corner = -1;
+    for (int t = 0; t < linkage->triangle_count && panel < 0; ++t)
+        for (int k = 0; k < 3; ++k) {
+            const int* h = linkage->triangles[t];
+            if (linkage->on_rim[h[k]] && !linkage->on_rim[h[(k + 1) % 3]] && !linkage->on_rim[h[(k + 2) % 3]])
+                panel = t, corner = k;
+        }
+    assert_true(panel >= 0);
+    const int* h = linkage->triangles[panel];
+    double before[3], *tip = x[h[corner]];
+    memcpy(before, tip, sizeof before);
+    for (int c = 0; c < 3; ++c) // equilateral, or nearly so
+        tip[c] = x[h[(corner + 1) % 3]][c] + x[h[(corner + 2) % 3]][c] - before[c];
+    plan = make(&sample, &o);
+    memcpy(tip, before, sizeof before);
+    assert_int_equal(plan.folds, 2);
+    assert_true(plan.fold[0] == panel || plan.fold[1] == panel);
+    ax_cut_plan_free(&plan);
+}
+
 static void what_collides_is_named(void** state)
 {
     (void)state;
@@ -1019,6 +1051,7 @@ int main(void)
         cmocka_unit_test(a_ligament_that_would_break_or_is_wide_is_doubted),
         cmocka_unit_test(pieces_fit_their_sheets_and_hold_together),
         cmocka_unit_test(clearance_is_what_turning_the_panels_finds),
+        cmocka_unit_test(folded_neighbours_are_told),
         cmocka_unit_test(what_collides_is_named),
         cmocka_unit_test(without_a_load_the_way_is_straight),
         cmocka_unit_test(the_simulated_way_ends_in_the_equilibrium),

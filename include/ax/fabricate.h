@@ -167,6 +167,9 @@ typedef struct ax_cut_plan {
     ax_cut_clash* clashes; // at most AX_CLASHES of them are kept; clash_count counts these
     ax_cut_part* parts;
     int clashes_found;
+    // Neighbours folded onto each other, by more than a right angle, in the simulated state (else the deployed one): they share a hinge and so
+    // are no clash, but joints do not bend so far. fold: the panels of the first, -1 without.
+    int folds, fold[2];
     int frame_count;
     ax_cut_frame* frames;
     bool simulated_way; // frames are of a simulation; else the panels' middles go straight from flat to open

@@ -651,6 +651,30 @@ static void check_flat(ax_work* w)
     ax_free(places);
 }
 
+static void panel_normal(const int* hinges, const double (*x)[3], double normal[3])
+{
+    double a[3], b[3];
+    ax_sub3(x[hinges[1]], x[hinges[0]], a);
+    ax_sub3(x[hinges[2]], x[hinges[0]], b);
+    ax_cross(a, b, normal);
+}
+
+static void count_folds(ax_work* w)
+{
+    const ax_design* d = w->design;
+    ax_cut_plan* plan = w->plan;
+    const double(*x)[3] = (const double(*)[3])(d->simulated ? d->simulated : d->deployed);
+    plan->folds = 0, plan->fold[0] = plan->fold[1] = -1;
+    for (int i = 0; i < plan->hinge_count; ++i) {
+        const int* pair = plan->hinges[i].panels;
+        double a[3], b[3];
+        panel_normal(w->linkage->triangles[pair[0]], x, a);
+        panel_normal(w->linkage->triangles[pair[1]], x, b);
+        if (ax_dot3(a, b) < 0 && plan->folds++ == 0)
+            memcpy(plan->fold, pair, sizeof plan->fold);
+    }
+}
+
 ax_status ax_prove_clearance(ax_work* w, const ax_progress* progress, ax_error* error)
 {
     const ax_design* d = w->design;
@@ -658,6 +682,7 @@ ax_status ax_prove_clearance(ax_work* w, const ax_progress* progress, ax_error* 
     int(*mouth)[3] = ax_alloc((size_t)w->linkage->hinge_count, sizeof *mouth);
     find_mouths(w, mouth);
     set_forces(w);
+    count_folds(w);
     bool go_on = true;
     if (w->options->clearance) {
         ax_pool* pool = ax_pool_make(0);
