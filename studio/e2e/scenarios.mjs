@@ -797,6 +797,33 @@ export const scenarios = {
         }, { viewport: { width: 700, height: 450 }, reducedMotion: "reduce" });
     },
 
+    async "a renderer that turns out to be slow still shows the shell at rest"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            const atRest = () => page.waitForFunction(() => auxshell.stage.value.atRest, null, { timeout: 60000 });
+            await atRest();
+            await page.evaluate(() => {
+                const stage = auxshell.stage.value;
+                stage.wholeTimes = [0, 1000]; // the last two pictures: the next one decides
+                stage.invalidateBackdrop();
+            });
+            await atRest();
+            await page.waitForTimeout(300);
+            await atRest();
+            const picture = [...(await page.screenshot())];
+            const coloured = await page.evaluate(async (bytes) => {
+                const image = await createImageBitmap(new Blob([Uint8Array.from(bytes)], { type: "image/png" }));
+                const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+                context.drawImage(image, 0, 0);
+                const { data } = context.getImageData(0, 0, image.width, image.height / 2); // above the legend
+                let count = 0;
+                for (let k = 0; k < data.length; k += 4) if (Math.max(data[k], data[k + 1], data[k + 2]) - Math.min(data[k], data[k + 1], data[k + 2]) > 50) count++;
+                return count;
+            }, picture);
+            assert.ok(coloured > 5000, `${coloured} pixels have the colour of panels`);
+        }, { refines: true });
+    },
+
     async "by touch: one finger selects, turns and paints, two pan and zoom"(browser) {
         await withStudio(browser, bowl, async (hand) => {
             const { page } = hand;

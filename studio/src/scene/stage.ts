@@ -528,7 +528,9 @@ export class Stage {
 
     /** While nothing else is to be done. */
     private getReady(): void {
+        const { grounds } = this;
         const scene = this.slow && this.liveScene();
+        if (this.grounds !== grounds) this.invalidate(); // the picture at rest made room for that of the ground
         if (!scene) return;
         if (this.practised) this.live!.prepare(scene);
         else this.live!.practise(this.shell!, scene);

@@ -161,7 +161,7 @@ function SelectionFacts() {
     }
     return (
         <>
-            <p class="small muted">{h ? plural(h, "hinge") : plural(n, "panel")}{n ? `, λ ${lo.toFixed(2)} to ${hi.toFixed(2)}` : ""}</p>
+            <p class="small muted">{h ? plural(h, "hinge") : plural(n, "panel")}{h === 1 && selectKind.value === "curve" ? ". Click where the way ends." : ""}{n ? `, λ ${lo.toFixed(2)} to ${hi.toFixed(2)}` : ""}</p>
             {schema && (
                 <form class="row" style={{ marginTop: "8px" }} onSubmit={(e) => {
                     e.preventDefault();
