@@ -161,7 +161,7 @@ static bool shape_sheet(ax_form* f, const ax_progress* progress, double hi)
         if (jumped && moved > worse * before)
             put_shape(f, ax_extrapolation_last(states));
         jumped = false;
-        if (++blocks > BLOCKS) {
+        if (++blocks > BLOCKS && done + BLOCK < MOST_ITERATIONS) { // what is left after a jump is iterated
             take_shape(f, ax_extrapolation_next(states));
             const double* limit = ax_extrapolation_limit(states);
             if (limit) {

@@ -437,6 +437,63 @@ export const scenarios = {
         });
     },
 
+    async "a line of hinges, the way between two of them and a loop of panels are selected, and kept by name"(browser) {
+        await withStudio(browser, bowl, async (hand) => {
+            const { page } = hand;
+            await hand.key("v");
+            const panel = page.getByRole("complementary");
+            /** Where a hinge of the flat view is on the page, inwards of it by `inside` of the way to the middle of one of its panels. */
+            const hinge = (h, inside = 0.2) => page.evaluate(([h, inside]) => {
+                const stage = auxshell.stage.value;
+                const view = stage.views.flat;
+                const { places, linkage } = stage.skins.flat;
+                const place = (k) => view.orbit.camera.position.clone().fromArray(places, 3 * k);
+                const t = linkage.around[2 * h];
+                const middle = place(linkage.triangles[3 * t]).add(place(linkage.triangles[3 * t + 1])).add(place(linkage.triangles[3 * t + 2])).divideScalar(3);
+                const p = stage.project(view, place(h).lerp(middle, inside));
+                const r = stage.canvas.getBoundingClientRect();
+                return [r.left + p.x, r.top + p.y];
+            }, [h, inside]);
+            /** Inner hinges nearest to two places of the flat view, in shares of the sheet. */
+            const near = (x, y) => page.evaluate(([x, y]) => {
+                const { places, linkage } = auxshell.stage.value.skins.flat;
+                let [best, least, size] = [-1, Infinity, 0];
+                for (let k = 0; k < places.length; k++) size = Math.max(size, Math.abs(places[k]));
+                for (let h = 0; 3 * h < places.length; h++) {
+                    const d = Math.hypot(places[3 * h] - x * size, places[3 * h + 1] - y * size);
+                    if (d < least && linkage.around[2 * h + 1] >= 0) [best, least] = [h, d];
+                }
+                return best;
+            }, [x, y]);
+            const [from, to] = [await near(-0.4, -0.3), await near(0.4, 0.2)];
+            await panel.getByRole("radio", { name: "Line" }).check({ force: true });
+            await page.mouse.click(...await hinge(from));
+            const line = await panel.getByText(/^\d+ hinges/).textContent();
+            assert.ok(parseInt(line) >= 5, line);
+            await hand.key("Escape");
+            await panel.getByRole("radio", { name: "Curve" }).check({ force: true });
+            await page.mouse.click(...await hinge(from));
+            await panel.getByText("Click where the way ends.").waitFor();
+            await page.mouse.click(...await hinge(to));
+            const way = await panel.getByText(/^\d+ hinges/).textContent();
+            assert.ok(parseInt(way) >= 5, way);
+            await panel.getByLabel("Name of the selection").fill("spine");
+            await panel.getByRole("region", { name: "Select" }).getByRole("button", { name: "Keep", exact: true }).click();
+            await hand.atIs(5);
+            const kept = await page.evaluate(() => auxshell.session.documentState.value.steps.at(-1).operator);
+            assert.deepEqual([kept.op, kept.name], ["select", "spine"]);
+            await hand.key("Escape");
+            await panel.getByRole("radio", { name: "Panels" }).check({ force: true });
+            const [a, b] = [await hinge(from), await hinge(to)];
+            await page.mouse.move(a[0], a[1]);
+            await page.mouse.down();
+            for (const [x, y] of [[a[0], b[1]], b, [b[0], a[1]]]) await page.mouse.move(x, y, { steps: 6 });
+            await page.mouse.up();
+            const loop = await panel.getByText(/^\d+ panels/).textContent();
+            assert.ok(parseInt(loop) >= 10, loop);
+        });
+    },
+
     async "the deployment is played through states of the solver, while it computes them"(browser) {
         const large = [{ ...circle, triangles: 1500 }, ...bowl.slice(1)];
         for (const operators of [large, [...large.slice(0, -1), { op: "expand" }]]) await withStudio(browser, operators, async (hand) => {
