@@ -4,6 +4,7 @@
 #include "linkage/lattice.h"
 #include "support/test.h"
 
+#include <math.h>
 #include <string.h>
 
 // Hinges of a uniform sheet over a disk of radius 1, lifted by z = height(r); turned over with `side` -1.
@@ -118,12 +119,35 @@ static void a_plane_has_no_curvature(void** state)
     free_lifted(&s);
 }
 
+static void a_turn_is_no_move_and_a_lift_is(void** state)
+{
+    (void)state;
+    enum { COUNT = 40 };
+    double from[COUNT][3], to[COUNT][3];
+    for (int h = 0; h < COUNT; ++h) {
+        double x = cos(h) * (1 + 0.1 * h), y = sin(h) * (2 + 0.1 * h);
+        memcpy(from[h], (double[3]){5 + x, 3 + y, 0.2 * h}, sizeof *from);
+    }
+    double middle[2] = {0, 0};
+    for (int h = 0; h < COUNT; ++h)
+        middle[0] += from[h][0] / COUNT, middle[1] += from[h][1] / COUNT;
+    for (int h = 0; h < COUNT; ++h) {
+        double x = from[h][0] - middle[0], y = from[h][1] - middle[1];
+        const double turned[3] = {middle[0] + 0.8 * x - 0.6 * y, middle[1] + 0.6 * x + 0.8 * y, from[h][2]};
+        memcpy(to[h], turned, sizeof *to);
+    }
+    assert_near(ax_measure_move(COUNT, (const double(*)[3])from, (const double(*)[3])to), 0, 1e-12);
+    to[7][2] += 0.25;
+    assert_near(ax_measure_move(COUNT, (const double(*)[3])from, (const double(*)[3])to), 0.25, 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sphere_bulges_everywhere_and_evenly),
         cmocka_unit_test(a_foot_that_flares_dips_up_to_the_border),
         cmocka_unit_test(a_plane_has_no_curvature),
+        cmocka_unit_test(a_turn_is_no_move_and_a_lift_is),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

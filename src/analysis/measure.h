@@ -5,6 +5,10 @@
 #include "ax/design.h"
 #include "mesh/closest.h"
 
+// Largest distance between two states of `count` hinges but for a turn about the vertical through the middle of the first: a sheet turns in
+// a rim that is nearly round by next to no force.
+double ax_measure_move(int count, const double (*from)[3], const double (*to)[3]);
+
 // Largest |flat edge / other edge - 1| over all edges; `other` in space.
 double ax_measure_congruence(const ax_linkage* linkage, const double (*flat)[2], const double (*other)[3]);
 

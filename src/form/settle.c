@@ -1,6 +1,7 @@
 // Settling: both states until they rest.
 #include "form/state.h"
 
+#include "analysis/measure.h"
 #include "base/vec.h"
 #include "solver/extrapolate.h"
 
@@ -149,9 +150,9 @@ static bool shape_sheet(ax_form* f, const ax_progress* progress, double hi)
     for (int done = 0, blocks = 0; done < MOST_ITERATIONS && going; done += BLOCK) {
         ax_form_iterate_shape(f, BLOCK);
         f->iterations += BLOCK;
-        double moved = 0, off = shape_error(f);
-        for (size_t h = 0; h < n; ++h)
-            moved = fmax(moved, ax_distance3(was[h], f->deployed[h]) / f->lattice.spacing);
+        double off = shape_error(f),
+               moved = ax_measure_move((int)n, (const double(*)[3])was, (const double(*)[3])f->deployed) /
+                       f->lattice.spacing;
         going = ax_progress_report(progress, shaping, hi * done / MOST_ITERATIONS, off);
         if (off < 0.95 * best)
             best = off, bettered = done;
