@@ -22,7 +22,8 @@ enum {
     STALLED = 450 // iterations without better edges: they cannot be right
 };
 static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 2e-3, good_error = 5e-3, balance_error = 0.03;
-static const double block_step = 2e-4, worse = 4; // in lattice spacings; times the step before
+static const double block_step = 2e-4; // in lattice spacings
+static const double astray = 4;        // steps so many times longer after a jump than before it: it is taken back
 static const char shaping[] = "Shaping the sheet", loading[] = "Loading the sheet";
 
 // While a fresh sheet opens, its load leans on it, spread evenly: what lies between a painted dome and a rim with too little room for it
@@ -138,8 +139,8 @@ static void put_shape(ax_form* f, const double* z)
     ax_solver_set_multipliers(f->shape, z + 5 * n);
 }
 
-// Both states of the shape. Edges are right after a hundred iterations or two; a few slow modes, of which the form keeps a tenth in
-// thirty more, are what a limit of states some iterations apart takes at once. False if cancelled.
+// Both states of the shape. Edges are right after one or two hundred iterations; a few slow modes are left, of which a block of iterations
+// keeps nine tenths: the limit of some states a block apart takes them away at once. False if cancelled.
 static bool shape_sheet(ax_form* f, const ax_progress* progress, double hi)
 {
     size_t n = (size_t)f->lattice.linkage.hinge_count;
@@ -159,7 +160,7 @@ static bool shape_sheet(ax_form* f, const ax_progress* progress, double hi)
         if ((off < rest_error && moved < block_step) ||
             (done >= SHAPE_ITERATIONS && (off < good_error || done - bettered >= STALLED)))
             break;
-        if (jumped && moved > worse * before)
+        if (jumped && moved > astray * before)
             put_shape(f, ax_extrapolation_last(states));
         jumped = false;
         if (++blocks > BLOCKS && done + BLOCK < MOST_ITERATIONS) { // what is left after a jump is iterated
