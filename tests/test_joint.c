@@ -278,6 +278,35 @@ static void contradictions_are_reported(void** state)
     free_draft(&d);
 }
 
+// Held ten edges apart, a hinge and all that lies two panels away cannot be part of one sheet.
+static void where_a_solve_stalls_is_told(void** state)
+{
+    (void)state;
+    draft d = make_draft(0.1, 0);
+    const ax_linkage* linkage = &d.lattice.linkage;
+    int middle = 0;
+    for (int h = 1; h < d.n; ++h)
+        if (ax_distance2(d.lattice.hinges[h], (double[]){0, 0}) <
+            ax_distance2(d.lattice.hinges[middle], (double[]){0, 0}))
+            middle = h;
+    for (int h = 0; h < d.n; ++h)
+        if (h == middle || ax_distance2(d.lattice.hinges[h], d.lattice.hinges[middle]) > 0.15)
+            d.places[h].kind = AX_JOINT_FIXED;
+    d.deployed[middle][2] += 10 * d.edge;
+    ax_joint_problem problem = problem_of(&d);
+    ax_joint_result result;
+    assert_int_equal(ax_joint_solve(&problem, d.flat, d.deployed, NULL, &result, NULL), AX_OK);
+    assert_false(result.converged);
+    assert_near(ax_measure_congruence(linkage, (const double(*)[2])d.flat, (const double(*)[3])d.deployed),
+                result.congruence, 1e-9 * result.congruence);
+    const ax_linkage there = {
+        .hinge_count = d.n, .triangle_count = 1, .triangles = linkage->triangles + result.congruence_at};
+    assert_near(ax_measure_congruence(&there, (const double(*)[2])d.flat, (const double(*)[3])d.deployed),
+                result.congruence, 1e-9 * result.congruence);
+    assert_at_most(ax_distance2(d.lattice.hinges[there.triangles[0][0]], d.lattice.hinges[middle]), 0.3);
+    free_draft(&d);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -288,6 +317,7 @@ int main(void)
         cmocka_unit_test(released_border_triangles_stay_within_their_bound),
         cmocka_unit_test(mouths_are_kept_as_wide_as_asked),
         cmocka_unit_test(contradictions_are_reported),
+        cmocka_unit_test(where_a_solve_stalls_is_told),
     };
     return cmocka_run_group_tests_name("joint", tests, NULL, NULL);
 }

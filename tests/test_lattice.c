@@ -108,7 +108,7 @@ static void the_twisted_uniform_lattice_has_the_mouths_and_edges_of_its_scale_fa
         ax_measure_scale(linkage, (const double(*)[2])flat, scale);
         for (int t = 0; t < linkage->triangle_count; ++t)
             assert_near(scale[t], scales[k], 1e-6);
-        assert_int_equal(ax_measure_flipped(linkage, (const double(*)[2])flat), 0);
+        assert_int_equal(ax_measure_flipped(linkage, (const double(*)[2])flat, NULL), 0);
         ax_free(mouth);
         ax_free(flat);
         ax_free(scale);
@@ -177,7 +177,7 @@ static void overlaps_and_flips_are_found_where_they_are_made(void** state)
     assert_true(ax_measure_overlaps(linkage, (const double(*)[2])flat, 0.05, 1, first) == 0);
     for (int h = 0; h < n; ++h)
         flat[h][0] = -lattice.hinges[h][0], flat[h][1] = lattice.hinges[h][1];
-    assert_int_equal(ax_measure_flipped(linkage, (const double(*)[2])flat), linkage->triangle_count);
+    assert_int_equal(ax_measure_flipped(linkage, (const double(*)[2])flat, NULL), linkage->triangle_count);
     ax_free(flat);
     ax_lattice_free(&lattice);
 }

@@ -153,7 +153,19 @@ class Recipes(CommandCase):
                 {"op": "gravity"}, {"op": "finish"}]
         done = run("run", self.write(taut), "-o", self.folder / "x.auxshell")
         self.assertEqual(done.returncode, 4)
-        self.assertIn("pulled taut", done.stderr)
+        self.assertRegex(done.stderr, r"pulled taut between its supports, most at panel [A-Z]+\d+ at \(")
+
+    def test_what_cannot_be_made_congruent_is_told_with_its_places_and_what_to_do(self):
+        # two neighbouring hinges are held far above and far below the rim: the sheet between them cannot reach both
+        torn = [{"op": "start_circle", "radius": 1, "triangles": 300, "scale": 1.2}, {"op": "rim_circle", "radius": 1},
+                {"op": "hold_fixed", "hinges": "200", "at": "points", "points": [[0, 0, 3]]},
+                {"op": "hold_fixed", "hinges": "205", "at": "points", "points": [[0, 0, -3]]}, {"op": "expand"}, {"op": "finish"}]
+        done = run("run", self.write(torn), "-o", self.folder / "x.auxshell")
+        self.assertEqual(done.returncode, 4)
+        words = done.stderr
+        self.assertRegex(words, r"cannot be made congruent: where they begin edges differ by up to \d+ %, at panel [A-Z]+\d+ \(")
+        self.assertRegex(words, r"Too little material at panel [A-Z]+\d+ \([-\d., ]+ on the sheet\): .* Paint larger scale factors")
+        self.assertRegex(words, r"Too much material at panel [A-Z]+\d+ \([-\d., ]+ on the sheet\): .* Paint smaller scale factors")
 
     def test_what_cannot_exist_leaves_what_came_before(self):
         out = self.folder / "x.auxshell"

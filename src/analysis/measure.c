@@ -189,12 +189,15 @@ int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], doub
     return found;
 }
 
-int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2])
+int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2], int* first)
 {
     int flipped = 0;
     for (int t = 0; t < linkage->triangle_count; ++t) {
         const int* corner = linkage->triangles[t];
-        flipped += !(ax_orient2(flat[corner[0]], flat[corner[1]], flat[corner[2]]) > 0);
+        if (ax_orient2(flat[corner[0]], flat[corner[1]], flat[corner[2]]) > 0)
+            continue;
+        if (flipped++ == 0 && first)
+            *first = t;
     }
     return flipped;
 }

@@ -30,7 +30,8 @@ double* ax_measure_mouth_angles(const ax_linkage* linkage, const double (*flat)[
 // Number of pairs of flat triangles whose interiors overlap by more than `depth` (separating axes over a grid); the first `most` of
 // them go to `pairs`.
 int ax_measure_overlaps(const ax_linkage* linkage, const double (*flat)[2], double depth, int most, int (*pairs)[2]);
-int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2]);
+// Number of flat triangles that are turned over; the first of them, if there are any, goes to *first (NULL: not wanted).
+int ax_measure_flipped(const ax_linkage* linkage, const double (*flat)[2], int* first);
 
 // Realised scale factor per triangle: twice its mean edge over the lattice spacing that its neighbours' centres show in the
 // flat state; for border triangles, which lack a neighbour, the one that their mouths show.

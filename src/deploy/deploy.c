@@ -53,6 +53,22 @@ static double force_over_tension(const ladder* l)
     return most;
 }
 
+static double edge_off(const ladder* l, int e)
+{
+    const int* end = l->model->edge[e];
+    return fabs(ax_distance3(l->x[end[0]], l->x[end[1]]) / l->model->length[e] - 1);
+}
+
+static void find_worst_edges(ladder* l)
+{
+    int tightest = 0, furthest = 0;
+    for (int e = 1; e < l->model->edge_count; ++e) {
+        tightest = fabs(l->force[e]) > fabs(l->force[tightest]) ? e : tightest;
+        furthest = edge_off(l, e) > edge_off(l, furthest) ? e : furthest;
+    }
+    l->result->tightest = tightest, l->result->furthest = furthest;
+}
+
 typedef struct bead {
     int curve;         // the first sliding hinge on the same one
     double start, end; // along it
@@ -272,6 +288,7 @@ bool ax_deploy(const ax_deploy_model* model, const double (*designed)[3], double
     result->taut = !done && result->residuals.edge < 1e-5 && force_over_tension(&l) > most_tension;
     if (result->taut)
         result->force_over_tension = force_over_tension(&l);
+    find_worst_edges(&l);
     ax_deployment at_once = *result; // it says most about what is wrong with a sheet that nothing opens
     bool hopeless = result->gathered || result->taut; // from flat, whatever the way
     if (!done && !cancelled && !hopeless && !model->inflated) {

@@ -24,6 +24,7 @@ typedef struct ax_deployment {
     // Smallest and largest gap between neighbours on their curve, in length and over the mean; 1 where nothing slides on
     // curves. Below 0: hinges have passed each other, and the state is not exact whatever its residuals.
     double gap_least, gap_most;
+    int tightest, furthest; // edges with the largest force and furthest from their length, where the first way up led
     bool taut;     // edges reach their lengths only as forces grow without bound: the sheet has no room to bulge
     bool gathered; // hinges leave a part of their curve bare: it is longer than the linkage can reach. Not exact either
     int projective_steps, newton_steps, factorisations;

@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "base/vec.h"
 #include "design/apart.h"
+#include "design/place.h"
 #include "linkage/lattice.h"
 #include "mesh/closest.h"
 #include "mesh/geometry.h"
@@ -267,34 +268,46 @@ static ax_status accept_target(ax_design* design, const ax_design_options* optio
     return AX_OK;
 }
 
+// A panel that turns at hinge h.
+static int panel_at(const ax_linkage* linkage, int h)
+{
+    int t = 0;
+    while (linkage->triangles[t][0] != h && linkage->triangles[t][1] != h && linkage->triangles[t][2] != h)
+        ++t;
+    return t;
+}
+
 static ax_status verify(const ax_design* design, const ax_joint_result* joint, ax_error* error)
 {
     const ax_report* r = &design->report;
-    char a[16], b[16];
+    char place[96], other[16];
     if (!joint->converged)
         return ax_fail(
             error, AX_CANNOT_REALISE,
-            "Flat and deployed triangles could not be made congruent: edges differ by up to %.1e after %d "
-            "steps. The scale factors run from %.3f to %.3f; keep away from the ends of 1 to 2 with --scale, "
-            "use --border inside, or change the number of triangles.",
-            joint->congruence, joint->steps, r->scale_min, r->scale_max);
-    if (r->flipped_flat)
+            "Flat and deployed triangles could not be made congruent: edges differ by up to %.1e after %d steps, most "
+            "at "
+            "%s, where the scale factor is %.3f. In all they run from %.3f to %.3f; keep away from the ends of 1 to 2 "
+            "with --scale, use --border inside, or change the number of triangles.",
+            joint->congruence, joint->steps, ax_design_name_place(design, joint->congruence_at, place),
+            design->scale[joint->congruence_at], r->scale_min, r->scale_max);
+    int flipped;
+    if (ax_measure_flipped(&design->linkage, (const double(*)[2])design->flat, &flipped))
         return ax_fail(error, AX_CANNOT_REALISE,
-                       "%d flat triangles came out turned over. Use more triangles or --border inside.",
-                       r->flipped_flat);
+                       "%d flat triangles came out turned over, first %s. Use more triangles or --border inside.",
+                       r->flipped_flat, ax_design_name_place(design, flipped, place));
     if (r->overlap_pairs) {
-        ax_panel_name(&design->linkage, r->overlap_first[0], a);
-        ax_panel_name(&design->linkage, r->overlap_first[1], b);
+        ax_panel_name(&design->linkage, r->overlap_first[1], other);
         return ax_fail(error, AX_CANNOT_REALISE,
-                       "%d pairs of flat triangles overlap, first %s and %s. Keep border triangles equilateral, use "
-                       "--border inside, or change the number of triangles.",
-                       r->overlap_pairs, a, b);
+                       "%d pairs of flat triangles overlap, first %s and its neighbour %s. Keep border triangles "
+                       "equilateral, use --border inside, or change the number of triangles.",
+                       r->overlap_pairs, ax_design_name_place(design, r->overlap_first[0], place), other);
     }
     if (r->mouth_min_deg < design->mouth_min)
         return ax_fail(error, AX_CANNOT_REALISE,
-                       "The mouth at hinge %d is %.2f degrees, less than the %.2f asked. Lower --mouth-min, lower the "
-                       "upper limit of --scale, or change the number of triangles.",
-                       r->mouth_min_hinge, r->mouth_min_deg, design->mouth_min);
+                       "The mouth at %s is %.2f degrees, less than the %.2f asked. Lower --mouth-min, lower the upper "
+                       "limit of --scale, or change the number of triangles.",
+                       ax_design_name_place(design, panel_at(&design->linkage, r->mouth_min_hinge), place),
+                       r->mouth_min_deg, design->mouth_min);
     return AX_OK;
 }
 

@@ -114,7 +114,7 @@ void ax_design_measure(ax_design* design)
     }
     ax_mouth_measure mouths = ax_measure_mouths(linkage, flat);
     r->mouth_min_deg = mouths.min_deg, r->mouth_median_deg = mouths.median_deg, r->mouth_min_hinge = mouths.min_hinge;
-    r->flipped_flat = ax_measure_flipped(linkage, flat);
+    r->flipped_flat = ax_measure_flipped(linkage, flat, NULL);
     r->overlap_first[0] = r->overlap_first[1] = -1;
     r->overlap_pairs = ax_measure_overlaps(linkage, flat, 1e-6 * edges.mean, 1, &r->overlap_first);
     ax_measure_hole_angles(linkage, (const double(*)[3])design->deployed, r->hole_angle_deployed_deg);

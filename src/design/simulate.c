@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/vec.h"
+#include "design/place.h"
 #include "design/simulate.h"
 #include "mesh/geometry.h"
 
@@ -120,6 +121,11 @@ ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const 
     bool finished = ax_deploy(&model, (const double(*)[3])designed, x, force, progress, &result);
     ax_free(designed);
     ax_status status = AX_OK;
+    char tightest[96] = "", furthest[96] = "";
+    if (finished && !result.exact) {
+        ax_design_name_place(design, model.edge_source[result.tightest] / 3, tightest);
+        ax_design_name_place(design, model.edge_source[result.furthest] / 3, furthest);
+    }
     if (!finished)
         status = ax_fail(error, AX_CANCELLED, "Cancelled.");
     else if (result.exact)
@@ -137,27 +143,29 @@ ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const 
                     "Rim hinges would pass each other on the curve that they slide on, which panels cannot do. Fix "
                     "some of them, or choose a curve with gentler bends.");
     else if (result.taut && !has_wide_facets(design))
-        status = ax_fail(
-            error, AX_CANNOT_REALISE,
-            "The sheet is pulled taut between its supports: edge forces are beyond %.0f times what the load asks of a "
-            "sheet that bulges, and grow without bound. Bring the supports closer by a few per cent, or raise the "
-            "scale factors.",
-            result.force_over_tension);
+        status = ax_fail(error, AX_CANNOT_REALISE,
+                         "The sheet is pulled taut between its supports, most at %s: edge forces are beyond %.0f times "
+                         "what the load "
+                         "asks of a sheet that bulges, and grow without bound. Bring the supports closer by a few per "
+                         "cent, or raise "
+                         "the scale factors there.",
+                         tightest, result.force_over_tension);
     else if (result.force_over_tension > 100 && result.residuals.edge > 1e-3 && !reached)
         status = ax_fail(
             error, AX_CANNOT_REALISE,
             "The supports are too far apart: even fully open the linkage does not reach them, and edge forces grow "
-            "without bound. Bring the supports closer, or raise the scale factors.");
+            "without bound, most at %s. Bring the supports closer, or raise the scale factors there.",
+            tightest);
     else
-        status =
-            ax_fail(error, AX_FAILED,
-                    "The deployment did not reach equilibrium: edges are off by %.1e and forces by %.1e of the load "
-                    "after %d projective and %d exact steps%s. Nothing simulated is kept. %s",
-                    result.residuals.edge, result.residuals.force, result.projective_steps, result.newton_steps,
-                    result.stable || result.residuals.force > 1e-10 ? "" : ", and the state found is not stable",
-                    has_wide_facets(design) ? "The target's facets are wider than the panels, and flat facets carry no "
-                                              "load: refine the mesh (--refine)."
-                                            : "Try the other load, more supports, or another number of triangles.");
+        status = ax_fail(
+            error, AX_FAILED,
+            "The deployment did not reach equilibrium: edges are off by %.1e, most at %s, and forces by %.1e of "
+            "the load after %d projective and %d exact steps%s. Nothing simulated is kept. %s",
+            result.residuals.edge, furthest, result.residuals.force, result.projective_steps, result.newton_steps,
+            result.stable || result.residuals.force > 1e-10 ? "" : ", and the state found is not stable",
+            has_wide_facets(design) ? "The target's facets are wider than the panels, and flat facets carry no "
+                                      "load: refine the mesh (--refine)."
+                                    : "Try the other load, more supports, or another number of triangles.");
     ax_design_measure(design);
     design->report.energy = status == AX_OK ? result.energy * newton * model.unit * metre : NAN;
     design->report.stable = status == AX_OK && result.stable;

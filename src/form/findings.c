@@ -82,18 +82,6 @@ static double underlay_distance(const ax_form* f, int k, int* panel)
     return least;
 }
 
-static int first_flipped(const ax_form* f)
-{
-    const ax_linkage* linkage = &f->lattice.linkage;
-    for (int t = 0; t < linkage->triangle_count; ++t) {
-        const int* h = linkage->triangles[t];
-        const double *o = f->flat[h[0]], *p = f->flat[h[1]], *q = f->flat[h[2]];
-        if (ax_cross2((double[2]){p[0] - o[0], p[1] - o[1]}, (double[2]){q[0] - o[0], q[1] - o[1]}) <= 0)
-            return t;
-    }
-    return -1;
-}
-
 // The panel whose edges differ most between the flat state and one in space.
 static int most_strained(const ax_form* f, const double (*x)[3])
 {
@@ -138,6 +126,20 @@ static bool rim_is_held(const ax_form* f)
     return false;
 }
 
+// What to do about too much material at a hinge, and about too little.
+static const char* slacken_less(const ax_form* f, int hinge)
+{
+    return beside_rim(f, hinge) && rim_is_held(f)
+               ? "Paint smaller scale factors there, move the rim outwards, or tighten to load."
+               : "Paint smaller scale factors there, or tighten to load.";
+}
+static const char* pull_less(const ax_form* f, int hinge, bool everywhere)
+{
+    return !rim_is_held(f)                      ? "Paint larger scale factors there, or move what holds it closer."
+           : everywhere || beside_rim(f, hinge) ? "Paint larger scale factors there, or move the rim inwards."
+                                                : "Paint larger scale factors there.";
+}
+
 // Slack holes by the places where they are together: too much material there.
 static void find_slack(const ax_form* f, ax_form_report* r)
 {
@@ -158,9 +160,8 @@ static void find_slack(const ax_form* f, ax_form_report* r)
             snprintf(how, sizeof how, "%d of %d holes are slack. ", slack, linkage->hole_count);
         snprintf(number, sizeof number, regions[k].count > 1 ? "%d holes, the slackest" : "a hole", regions[k].count);
         tell(r, AX_SEVERITY_WARNING, "slack", 1 - regions[k].value, slack_opening,
-             "%sToo much material at %s: %s %.0f %% open. Paint smaller scale factors there, %stighten to load.", how,
-             name_place(f, hinge, place), number, 100 * (1 - regions[k].value),
-             beside_rim(f, hinge) && rim_is_held(f) ? "move the rim outwards, or " : "or ")
+             "%sToo much material at %s: %s %.0f %% open. %s", how, name_place(f, hinge, place), number,
+             100 * (1 - regions[k].value), slacken_less(f, hinge))
             ->hinge = hinge;
     }
     ax_free(off);
@@ -193,11 +194,8 @@ static void find_tight(const ax_form* f, ax_form_report* r)
                      regions[k].value / free_pull);
         else
             snprintf(pull, sizeof pull, "a pull of up to %.1f edges beyond what they reach", regions[k].value);
-        tell(r, AX_SEVERITY_WARNING, "tight", regions[k].value, tight_multiplier,
-             "Too little material %s: %s %s. Paint larger scale factors there%s.", place, number, pull,
-             !rim_is_held(f)                      ? ", or move what holds it closer"
-             : everywhere || beside_rim(f, hinge) ? ", or move the rim inwards"
-                                                  : "")
+        tell(r, AX_SEVERITY_WARNING, "tight", regions[k].value, tight_multiplier, "Too little material %s: %s %s. %s",
+             place, number, pull, pull_less(f, hinge, everywhere))
             ->triangle = panel;
         r->findings[r->finding_count - 1].hinge = hinge;
     }
@@ -216,7 +214,7 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
     double worst = fmax(r->flat_error, moved ? fmax(r->deployed_error, ax_form_hangs(f) ? r->simulated_error : 0) : 0);
     if (worst > settled_error) {
         int at = most_strained(f, x);
-        tell(r, AX_SEVERITY_FAILURE, "unsettled", worst, settled_error, "Edges are off by %.2g %%, most at %s: %s.",
+        tell(r, AX_SEVERITY_FAILURE, "unsettled", worst, settled_error, "Edges are off by %.3g %%, most at %s: %s.",
              100 * worst, name_place(f, linkage->triangles[at][0], place),
              f->iterations ? "the request cannot be met, or needs more steps" : "not solved yet")
             ->triangle = at;
@@ -228,15 +226,20 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
         ax_panel_name(linkage, pair[0][0], a);
         ax_panel_name(linkage, pair[0][1], b);
         tell(r, AX_SEVERITY_FAILURE, "overlap", r->overlap_pairs, 0,
-             "%d pairs of panels overlap in the flat state, %s and %s first.", r->overlap_pairs, a, b);
+             "%d pairs of panels overlap in the flat state, %s and %s first, at %s: paint smaller scale factors there, "
+             "or release the border.",
+             r->overlap_pairs, a, b, name_place(f, linkage->triangles[pair[0][0]][0], place));
         r->findings[r->finding_count - 1].triangle = pair[0][0];
         r->findings[r->finding_count - 1].other = pair[0][1];
     }
-    if (r->flipped)
+    if (r->flipped) {
+        int first;
+        ax_measure_flipped(linkage, (const double(*)[2])f->flat, &first);
         tell(r, AX_SEVERITY_FAILURE, "flipped", r->flipped, 0,
              "%d panels are turned over in the flat state, the first at %s.", r->flipped,
-             name_place(f, linkage->triangles[first_flipped(f)][0], place))
-            ->triangle = first_flipped(f);
+             name_place(f, linkage->triangles[first][0], place))
+            ->triangle = first;
+    }
     if (r->mouth_min < f->mouth_min - 0.1 / degree)
         tell(r, r->mouth_min < 0 ? AX_SEVERITY_FAILURE : AX_SEVERITY_WARNING, "mouth", r->mouth_min * degree,
              f->mouth_min * degree,
@@ -297,4 +300,44 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
             r->findings[at] = r->findings[at - 1];
         r->findings[at] = finding;
     }
+}
+
+// ---- the joint solve ------------------------------------------------------------------------------------------------------------
+
+// The worst of a kind, furthest beyond its limit; NULL: none.
+static const ax_finding* worst_of(const ax_form_report* r, const char* kind)
+{
+    const ax_finding* worst = NULL;
+    for (const ax_finding* x = r->findings; x < r->findings + r->finding_count; ++x)
+        if (strcmp(x->kind, kind) == 0 && (!worst || fabs(x->value - x->limit) > fabs(worst->value - worst->limit)))
+            worst = x;
+    return worst;
+}
+
+ax_status ax_form_fail_joint(ax_form* f, const ax_joint_result* joint, ax_error* error)
+{
+    static const char* const kinds[] = {"overlap", "flipped", "tight", "slack", "held", "folded"};
+    static const double astray = 1e-2; // left so far apart, states tell nothing: those that the solve began with do
+    bool near = joint->congruence < astray;
+    int at = near ? joint->congruence_at : most_strained(f, (const double(*)[3])f->deployed), told = 0;
+    char place[64], text[1600];
+    name_place(f, f->lattice.linkage.triangles[at][0], place);
+    int used = snprintf(text, sizeof text, "The flat and the deployed state cannot be made congruent: ");
+    if (near)
+        used += snprintf(text + used, sizeof text - (size_t)used, "after %d steps edges still differ by %.1e, at %s.",
+                         joint->steps, joint->congruence, place);
+    else
+        used += snprintf(text + used, sizeof text - (size_t)used,
+                         "where they begin edges differ by up to %.3g %%, at %s, and %d steps lead away from there.",
+                         100 * ax_form_deployed_error(f), place, joint->steps);
+    ax_form_report report;
+    ax_form_measure(f, &report);
+    for (size_t kind = 0; kind < sizeof kinds / sizeof *kinds && told < MOST_PLACES; ++kind) {
+        const ax_finding* worst = worst_of(&report, kinds[kind]);
+        if (worst)
+            used += snprintf(text + used, sizeof text - (size_t)used, " %s", worst->text), ++told;
+    }
+    ax_form_report_free(&report);
+    return ax_fail(error, AX_CANNOT_REALISE, "%s%s", text,
+                   told ? "" : " Let the form settle further, release the border, or ask less of it.");
 }

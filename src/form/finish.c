@@ -4,7 +4,6 @@
 #include "base/vec.h"
 #include "design/apart.h"
 #include "design/simulate.h"
-#include "joint/joint.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -191,11 +190,7 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
     ax_status status = ax_solve_apart(&problem, AX_FORM_OVERLAP * unit, flat, deployed,
                                       ax_progress_within(&first, progress, 0, 0.4), &joint, error);
     if (status == AX_OK && !joint.converged)
-        status = ax_fail(
-            error, AX_CANNOT_REALISE,
-            "The flat and the deployed state cannot be made congruent here: %.1e is left after %d steps, and places "
-            "are missed by %.1e edges. Let the form settle further, release the border, or ask less of it.",
-            joint.congruence, joint.steps, joint.off_place);
+        status = ax_form_fail_joint(f, &joint, error);
     if (status == AX_OK) {
         moved a = distance(n, 2, f->flat[0], flat[0], unit);
         double(*before)[3] = ax_copy(f->deployed, (size_t)n, sizeof *before);

@@ -396,7 +396,7 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
     ax_mouth_measure mouths = ax_measure_mouths(linkage, flat);
     r->mouth_min = mouths.min_deg * AX_PI / 180;
     r->mouth_hinge = mouths.min_hinge;
-    r->flipped = ax_measure_flipped(linkage, flat);
+    r->flipped = ax_measure_flipped(linkage, flat, NULL);
     r->overlap_pairs = ax_measure_overlaps(linkage, flat, AX_FORM_OVERLAP * r->edge, 0, NULL);
     measure_scale(f, r);
     r->opening_min = 1, r->opening_mean = 0;

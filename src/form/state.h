@@ -5,6 +5,7 @@
 #include "base/pool.h"
 #include "constraint/place.h"
 #include "deploy/model.h"
+#include "joint/joint.h"
 #include "linkage/lattice.h"
 #include "mesh/closest.h"
 #include "solver/solver.h"
@@ -194,6 +195,8 @@ double ax_form_deployed_error(const ax_form* form);
 double ax_form_simulated_error(const ax_form* form);
 // Adds to a report, which holds the figures, what they tell people.
 void ax_form_find_problems(ax_form* form, ax_form_report* report);
+// AX_CANNOT_REALISE: where a joint solve from here stalls, and what is the matter with the form that it starts from.
+ax_status ax_form_fail_joint(ax_form* form, const ax_joint_result* joint, ax_error* error);
 // Of a panel in a state, twice its area long.
 void ax_form_panel_normal(const ax_form* form, int triangle, const double (*x)[3], double normal[3]);
 // Pairs of neighbouring panels whose normals oppose each other.

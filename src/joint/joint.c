@@ -121,15 +121,18 @@ static double constraint(const solver* s, const state* x, int e)
     return (d[0] * d[0] + d[1] * d[1] - d[2] * d[2] - d[3] * d[3] - d[4] * d[4]) / 2;
 }
 
-static double worst_congruence(const solver* s, const state* x)
+// With the panel that has it.
+static double worst_congruence(const solver* s, const state* x, int* panel)
 {
     double worst = 0;
+    *panel = 0;
     for (int e = 0; e < s->edges; ++e) {
         int i, j;
         edge_ends(s, e, &i, &j);
         double p = hypot(x[i][0] - x[j][0], x[i][1] - x[j][1]);
-        double q = ax_distance3(x[i] + 2, x[j] + 2);
-        worst = fmax(worst, fabs(p / q - 1));
+        double q = ax_distance3(x[i] + 2, x[j] + 2), off = fabs(p / q - 1);
+        if (off > worst)
+            worst = off, *panel = e / 3;
     }
     return worst;
 }
@@ -678,8 +681,8 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
     solver s = make(problem, flat, deployed);
     ax_status status = AX_OK;
     size_t bytes = (size_t)s.hinges * sizeof *s.x;
-    double mu = 1e3, longest = INFINITY, off_place = 0, congruence = worst_congruence(&s, (const state*)s.x);
-    int k = 0;
+    int k = 0, worst;
+    double mu = 1e3, longest = INFINITY, off_place = 0, congruence = worst_congruence(&s, (const state*)s.x, &worst);
     for (; k < STEPS; ++k) {
         if (problem->look)
             show(&s);
@@ -714,7 +717,7 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
                 break;
         }
         memcpy(s.x, s.trial, bytes);
-        congruence = worst_congruence(&s, (const state*)s.x);
+        congruence = worst_congruence(&s, (const state*)s.x, &worst);
         if (k + 1 >= ANCHORED_STEPS) {
             memcpy(s.anchor, s.x, bytes);
             s.settled = true;
@@ -728,6 +731,7 @@ ax_status ax_joint_solve(const ax_joint_problem* problem, double (*flat)[2], dou
                                 .factorisations = s.factorisations,
                                 .converged = congruence < 1e-10,
                                 .congruence = congruence,
+                                .congruence_at = worst,
                                 .off_place = off_place,
                                 .unequal = worst_unequal(&s, (const state*)s.x)};
     release(&s);

@@ -53,6 +53,7 @@ typedef struct ax_joint_result {
     int steps, factorisations;
     bool converged;    // congruence within 1e-10
     double congruence; // largest relative difference of an edge, flat against deployed
+    int congruence_at; // the panel that has it
     double off_place;  // largest distance of a deployed hinge from its surface, curve, place or plane, in mean edges
     double unequal;    // largest difference of two edges of a triangle over its mean edge, beyond what it may have
 } ax_joint_result;
