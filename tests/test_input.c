@@ -105,6 +105,7 @@ static void wrong_formulas_are_told_by_column(void** state)
         {"inf", "column 1", "no such"},
         {"xx", "column 1", "no such"},
         {"system(\"ls\")", "column 1", "no such"},
+        {"1 + expp(x)", "column 5", "did you mean exp;"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
         ax_formula* formula;

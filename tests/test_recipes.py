@@ -7,7 +7,8 @@ import time
 import unittest
 
 import support.tap
-from support.command import AUXSHELL, ROOT, CommandCase, run, run
+from judge_design import judge
+from support.command import AUXSHELL, ROOT, CommandCase, run
 
 SMALL = [
     {"op": "start_circle", "radius": 1, "triangles": 150, "scale": 1.2},
@@ -65,6 +66,74 @@ class Recipes(CommandCase):
                 self.assertEqual(done.returncode, 4, operators)
                 self.assertIn(words, done.stderr)
             self.succeed("run", self.write([*start, line, one, load]), *out)
+
+    def test_exact_states_have_no_panel_turned_over(self):
+        """Rims so tight that, with much room for border panels, one of them turns over in the flat state."""
+        out, design = self.folder / "x.auxshell", self.folder / "x.json"
+        for start, corners, load in (
+                ({"op": "start_rectangle", "width": 2, "height": 1.41, "triangles": 168, "scale": 1.24},
+                 [[0.754, 0.531, 0], [-0.754, 0.531, 0], [-0.754, -0.531, 0], [0.754, -0.531, 0]], "gravity"),
+                ({"op": "start_outline", "points": [[0, 0], [2, 0], [2, 0.6], [0.7, 0.6], [0.7, 1.8], [0, 1.8]],
+                  "triangles": 253, "scale": 1.47},
+                 [[0, 0, 0], [1.698, 0, 0], [1.698, 0.509, 0], [0.594, 0.509, 0], [0.594, 1.528, 0], [0, 1.528, 0]],
+                 "expand")):
+            operators = [start, {"op": "rim_polyline", "points": corners}, {"op": "drape", "depth": 0.3}, {"op": load},
+                         {"op": "finish"}]
+            words = self.succeed("run", self.write(operators), "-o", out)
+            self.assertIn("Exact after", words)
+            self.succeed("export", out, "-o", design)
+            figures = judge(json.loads(design.read_text()))
+            self.assertEqual((figures["flipped_flat"], figures["overlap_pairs"]), (0, 0), words)
+            self.assertLess(figures["congruence_max"], 1e-9)
+
+    def test_a_shell_that_slides_on_the_floor_is_finished(self):
+        out = self.folder / "x.auxshell"
+        floor = {"op": "hold_plane_given", "name": "floor", "hinges": "rim", "normal": [0, 0, 1], "support": True}
+        peg = {"op": "hold_fixed", "name": "peg", "hinges": "0", "at": "sheet"}
+        rest = [{"op": "inflation"}, {"op": "finish"}]
+        words = self.succeed("run", self.write([*SMALL[:2], floor, peg, *rest]), "-o", out)
+        self.assertIn("Exact after", words)
+        figures = judge(json.loads(self.export(out)))
+        self.assertLess(figures["force_residual"], 1e-8)
+        done = run("run", self.write([*SMALL[:2], floor, *rest]), "-o", out)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("slide away. Fix at least one hinge", done.stderr)
+
+    def test_parts_of_the_rim_have_names_of_their_own(self):
+        parts = [{"op": "rim_circle", "hinges": "rim:20..160", "radius": 1.1},
+                 {"op": "rim_line", "hinges": "rim:250..290", "point": [0, -1.1, 0], "direction": [1, 0, 0]}]
+        words = self.succeed("run", self.write([*SMALL[:2], *parts, {"op": "gravity"}]), "-o", self.folder / "x.auxshell")
+        self.assertRegex(words, r"boundary 1 +circle +\d")
+        self.assertRegex(words, r"boundary 2 +line +\d")
+
+    def test_exact_panels_are_no_edges_that_are_off(self):
+        words = self.succeed("run", self.write([*SMALL[:3], {"op": "gravity", "adapt": False}, {"op": "finish"}]), "-o",
+                             self.folder / "x.auxshell")
+        self.assertIn("Exact after", words)
+        self.assertNotIn("Edges are off", words)
+
+    def test_panels_that_cannot_stay_equilateral_are_told(self):
+        """Pegs where the sheet lay, which the open sheet has to leave."""
+        operators = [{"op": "start_circle", "radius": 1, "triangles": 206, "scale": 1.258, "angle": 17},
+                     {"op": "formula", "formula": "3 - r"}, {"op": "rim_fixed", "at": "sheet"},
+                     {"op": "hold_fixed", "name": "peg", "hinges": "disc(0,0,0.2)", "at": "sheet"},
+                     {"op": "gravity", "direction": [0, 0, 1]}, {"op": "finish"}]
+        words = self.succeed("run", self.write(operators), "-o", self.folder / "x.auxshell")
+        self.assertIn("with edges that differ", words)
+
+    def test_what_stands_in_the_way_is_told_with_its_place(self):
+        cube = "".join(f"v {x} {y} {z}\n" for z in (-2, -0.1) for y in (-0.2, 0.2) for x in (-0.2, 0.2))
+        (self.folder / "column.obj").write_text(
+            cube + "".join(f"f {face}\n" for face in ("1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6")))
+        underlay = {"op": "underlay", "file": "column.obj", "name": "column", "clearance": 0.1}
+        words = self.succeed("run", self.write([*SMALL, underlay]), "-o", self.folder / "x.auxshell")
+        self.assertRegex(words, "The shell runs into 'column' at panel .* on the sheet.; a clearance of 0.1 m is asked")
+        words = self.succeed("run", self.write([*SMALL, {**underlay, "at": [0, 0, -5]}]), "-o", self.folder / "x.auxshell")
+        self.assertNotIn("The shell", words)
+
+    def test_what_is_only_flat_says_so(self):
+        words = self.succeed("run", self.write(SMALL[:2]), "-o", self.folder / "x.auxshell")
+        self.assertIn("Only the flat state is solved yet", words)
 
     def test_supports_are_selected_as_in_recipes(self):
         out = self.folder / "x.auxshell"

@@ -50,9 +50,9 @@ static void print_state(ax_form* form)
     ax_form_measure(form, &r);
     const char* unit = ax_unit_name(ax_form_look(form).unit);
     printf("\n%s after %d iterations. Mean edge %.4g %s, scale factors %.3f to %.3f, smallest mouth %.1f degrees.\n",
-           r.exact     ? "Exact"
-           : r.settled ? "Settled"
-                       : "Not settled",
+           !r.settled ? "Not settled"
+           : r.exact  ? "Exact"
+                      : "Settled",
            r.iterations, r.edge, unit, r.realised_min, r.realised_max, r.mouth_min * 57.29577951308232);
     if (r.held_count)
         printf("\n  %-24s%-14s%8s  %12s\n", "held", "by", "hinges", "off by");
@@ -61,6 +61,8 @@ static void print_state(ax_form* form)
                unit);
     for (int k = 0; k < r.finding_count; ++k)
         printf("%s%s\n", k ? "" : "\n", r.findings[k].text);
+    if (ax_form_get_dynamics(form)->kind == AX_DYNAMICS_NONE)
+        printf("\nOnly the flat state is solved yet: expand, gravity or inflation opens the sheet.\n");
     ax_form_report_free(&r);
 }
 

@@ -47,6 +47,8 @@ typedef enum ax_curve_kind {
     AX_CURVE_SPLINE,   // points: control points of a centripetal Catmull-Rom spline
 } ax_curve_kind;
 
+const char* ax_curve_kind_name(ax_curve_kind kind); // "line", "circle", ...
+
 typedef struct ax_curve_shape {
     ax_curve_kind kind;
     bool closed; // polylines and splines
@@ -209,7 +211,7 @@ int ax_form_underlays(const ax_form* form, const char*** names, const ax_mesh** 
 typedef enum ax_severity { AX_SEVERITY_NOTE, AX_SEVERITY_WARNING, AX_SEVERITY_FAILURE } ax_severity;
 typedef struct ax_finding {
     ax_severity severity;
-    const char* kind;    // "mouth", "overlap", "slack", "tight", "overhang", "held", "scale",
+    const char* kind;    // "mouth", "overlap", "unequal", "slack", "tight", "overhang", "held", "scale",
                          // "clearance", "folded", "flipped", "unsettled"
     int triangle, hinge; // where; -1 if nowhere in particular
     int other;           // second panel of a pair, else -1
@@ -247,7 +249,8 @@ typedef struct ax_form_report {
     double growth;        // of the flat sheet by collisions, 1 = none
     double simulated_rms, simulated_max; // simulated against deployed, over L
     int held_count;
-    ax_held_figure* held; // rim parts, then constraints
+    ax_held_figure* held;       // rim parts, then constraints
+    char (*boundary_names)[24]; // what these name the rim's parts by
     int finding_count;
     ax_finding* findings; // failures first
 } ax_form_report;

@@ -88,6 +88,23 @@ ax_status ax_design_simulate(ax_design* design, const ax_load* load, const ax_pr
     return status;
 }
 
+// Whether all that is held lies in planes along which the shell can slide, their normals in one plane: no equilibrium is its only one.
+static bool slides_along_planes(int n, const ax_hold* holds)
+{
+    double sum[3][3] = {{0}}, across[3], trace = 0;
+    for (int h = 0; h < n; ++h) {
+        if (holds[h].kind == AX_HOLD_FIXED || holds[h].kind == AX_HOLD_ON_CURVE)
+            return false;
+        for (int i = 0; i < 3 && holds[h].kind == AX_HOLD_IN_PLANE; ++i)
+            for (int j = 0; j < 3; ++j)
+                sum[i][j] += holds[h].normal[i] * holds[h].normal[j];
+    }
+    for (int i = 0; i < 3; ++i)
+        trace += sum[i][i];
+    ax_cross(sum[1], sum[2], across);
+    return ax_dot3(sum[0], across) < 1e-9 * trace * trace * trace;
+}
+
 ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const ax_hold* holds,
                                   const ax_progress* progress, ax_error* error)
 {
@@ -100,10 +117,14 @@ ax_status ax_design_simulate_held(ax_design* design, const ax_load* load, const 
     int held = 0;
     for (int h = 0; h < design->linkage.hinge_count; ++h) {
         design->supports[h] = holds[h].kind != AX_HOLD_FREE;
-        held += holds[h].kind == AX_HOLD_FIXED || holds[h].kind == AX_HOLD_ON_CURVE;
+        held += holds[h].kind != AX_HOLD_FREE;
     }
     if (held < 3)
         return ax_fail(error, AX_USAGE, "%d hinges are supported; at least three are needed to hold the shell.", held);
+    if (slides_along_planes(design->linkage.hinge_count, holds))
+        return ax_fail(error, AX_CANNOT_REALISE,
+                       "The supports lie in planes along which the shell can slide away. Fix at least one hinge too "
+                       "(hold_fixed).");
     bool gravity = load->kind == AX_LOAD_GRAVITY;
     double metre = ax_unit_in_metres(design->unit), unit_load, start = ax_seconds();
     ax_deploy_model model =

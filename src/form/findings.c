@@ -13,7 +13,7 @@
 // Limits of what a settled form keeps, and above which people are told.
 enum { MOST_PLACES = 3 }; // told of what is the matter at several
 static const double settled_error = 1e-2, slack_opening = 0.95, tight_multiplier = 2, rim_gap = 0.02, loaded_gap = 0.3,
-                    scale_gap = 0.1;
+                    scale_gap = 0.1, unequal_gap = 0.01;
 
 static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kind, double value, double limit,
                         const char* format, ...) __attribute__((format(printf, 6, 7)));
@@ -63,12 +63,17 @@ static void nearest_part(const ax_closest* tree, const double corner[3][3], doub
     }
 }
 
-// Least distance of the panels from an underlay, to a thousandth of an edge, and the panel.
+static double underlay_tolerance(const ax_form* f)
+{
+    return 1e-3 * ax_form_sides_mean(f);
+}
+
+// Least distance of the panels from an underlay, up to the tolerance, and the panel.
 static double underlay_distance(const ax_form* f, int k, int* panel)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
     const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
-    double tolerance = 1e-3 * ax_form_sides_mean(f), least = INFINITY;
+    double tolerance = underlay_tolerance(f), least = INFINITY;
     ax_closest* tree = ax_closest_make(f->underlays + k);
     *panel = -1;
     for (int t = 0; t < linkage->triangle_count; ++t) {
@@ -107,6 +112,27 @@ static const char* name_place(const ax_form* f, int hinge, char text[64])
         at[c] = fabs(f->lattice.hinges[hinge][c]) < 1e-9 * f->radius ? 0 : f->lattice.hinges[hinge][c];
     snprintf(text, 64, "panel %s (%.3g, %.3g on the sheet)", panel, at[0], at[1]);
     return text;
+}
+
+// The panel within the sheet whose edges differ most, which are to be equal there, and by what share of their mean.
+static double most_unequal(const ax_form* f, int* panel)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    double most = 0;
+    *panel = -1;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        const int* h = linkage->triangles[t];
+        if (linkage->on_rim[h[0]] || linkage->on_rim[h[1]] || linkage->on_rim[h[2]])
+            continue;
+        double least = INFINITY, greatest = 0, mean = 0;
+        for (int k = 0; k < 3; ++k) {
+            double edge = ax_distance2(f->flat[h[k]], f->flat[h[(k + 1) % 3]]);
+            least = fmin(least, edge), greatest = fmax(greatest, edge), mean += edge / 3;
+        }
+        if (greatest - least > most * mean)
+            most = (greatest - least) / mean, *panel = t;
+    }
+    return most;
 }
 
 static bool beside_rim(const ax_form* f, int hinge)
@@ -219,6 +245,14 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
              f->iterations ? "the request cannot be met, or needs more steps" : "not solved yet")
             ->triangle = at;
     }
+    int unlike;
+    double unequal = f->exact ? most_unequal(f, &unlike) : 0;
+    if (unequal > unequal_gap)
+        tell(r, AX_SEVERITY_WARNING, "unequal", unequal, unequal_gap,
+             "Panels come out with edges that differ by up to %.2g %%, most at %s: what holds it asks for more than "
+             "equilateral panels can do.",
+             100 * unequal, name_place(f, linkage->triangles[unlike][0], place))
+            ->triangle = unlike;
     if (r->overlap_pairs) {
         int pair[1][2] = {{-1, -1}};
         ax_measure_overlaps(linkage, (const double(*)[2])f->flat, AX_FORM_OVERLAP * r->edge, 1, pair);
@@ -287,11 +321,15 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
     for (int k = 0; k < f->underlay_count; ++k) {
         int at;
         double least = underlay_distance(f, k, &at);
-        if (least < f->clearances[k])
-            tell(r, AX_SEVERITY_FAILURE, "clearance", least, f->clearances[k],
-                 "The shell comes within %.3g %s of '%s'; %.3g are asked.", least, unit, f->underlay_names[k],
-                 f->clearances[k])
-                ->triangle = at;
+        if (least >= f->clearances[k])
+            continue;
+        char how[48];
+        bool touches = least <= underlay_tolerance(f);
+        snprintf(how, sizeof how, touches ? "runs into" : "comes within %.3g %s of", least, unit);
+        tell(r, AX_SEVERITY_FAILURE, "clearance", touches ? 0 : least, f->clearances[k],
+             "The shell %s '%s' at %s; a clearance of %.3g %s is asked.", how, f->underlay_names[k],
+             name_place(f, linkage->triangles[at][0], place), f->clearances[k], unit)
+            ->triangle = at;
     }
     for (int k = 1; k < r->finding_count; ++k) { // the worst of a kind stays first
         ax_finding finding = r->findings[k];

@@ -1,6 +1,7 @@
 // From projective to exact: the joint solve near the present states, then deployment of the flat one.
 #include "form/state.h"
 
+#include "analysis/measure.h"
 #include "base/vec.h"
 #include "design/apart.h"
 #include "design/simulate.h"
@@ -9,7 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double border_unequal = 0.7; // of the mean edge, what released border panels may differ by
+// Of the mean edge, what released border panels may differ by. With the most room a panel at a sharp corner may turn over, and with
+// less it may not.
+static const double border_unequal[] = {0.7, 0.35, 0};
 
 typedef struct moved {
     double rms, max;
@@ -146,6 +149,53 @@ static void make_design(const ax_form* f, ax_design* design)
             design->target = ax_mesh_copy(f->held[k].surface);
 }
 
+// Congruent states near the present ones, without panels that overlap or are turned over in the flat state: the first that are found with
+// ever less room for border panels; joint->converged tells whether congruent ones were. The states are replaced by the last ones tried.
+static ax_status solve_clear(const ax_form* f, ax_joint_problem* problem, double (*flat)[2], double (*deployed)[3],
+                             const ax_progress* progress, ax_joint_result* joint, ax_error* error)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    size_t n = (size_t)linkage->hinge_count;
+    double unit = ax_form_sides_mean(f), (*start)[2] = ax_copy(flat, n, sizeof *start),
+           (*opened)[3] = ax_copy(deployed, n, sizeof *opened);
+    enum { TRIES = sizeof border_unequal / sizeof *border_unequal };
+    int overlaps = 0, flipped = 0, turned = 0, pair[1][2] = {{0, 0}};
+    ax_status status = AX_OK;
+    for (int k = f->released ? 0 : TRIES - 1; k < TRIES; ++k) {
+        ax_progress_part part;
+        double lo = 1 - 1.0 / (1 << k);
+        memcpy(flat, start, n * sizeof *flat);
+        memcpy(deployed, opened, n * sizeof *deployed);
+        problem->border_unequal = border_unequal[k];
+        status = ax_solve_apart(problem, AX_FORM_OVERLAP * unit, flat, deployed,
+                                ax_progress_within(&part, progress, lo, (1 + lo) / 2), joint, error);
+        if (status != AX_OK || !joint->converged)
+            break;
+        const double(*x)[2] = (const double(*)[2])flat;
+        overlaps = ax_measure_overlaps(linkage, x, AX_FORM_OVERLAP * unit, 1, pair);
+        flipped = ax_measure_flipped(linkage, x, &turned);
+        if (!overlaps && !flipped)
+            break;
+    }
+    ax_free(start);
+    ax_free(opened);
+    if (status == AX_OK && (overlaps || flipped)) {
+        char a[16], b[16];
+        int t = overlaps ? pair[0][0] : turned;
+        const int* h = linkage->triangles[t];
+        ax_panel_name(linkage, t, a);
+        ax_panel_name(linkage, pair[0][1], b);
+        return ax_fail(
+            error, AX_CANNOT_REALISE,
+            "Exact states have %d pairs of panels that overlap and %d panels that are turned over in the flat "
+            "state, %s%s%s first, at (%.3g, %.3g) on the sheet. Round the corner there by a fillet, move the "
+            "rim, or paint scale factors that change less steeply.",
+            overlaps, flipped, a, overlaps ? " and " : "", overlaps ? b : "", f->lattice.hinges[h[0]][0],
+            f->lattice.hinges[h[0]][1]);
+    }
+    return status;
+}
+
 void ax_form_snapshot(ax_form* f, bool loaded, ax_design* design)
 {
     make_design(f, design);
@@ -182,13 +232,12 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
                                 .places = places,
                                 .plane_count = planes,
                                 .planes = plane,
-                                .border_unequal = f->released ? border_unequal : 0,
                                 .mouth_min = f->mouth_min,
                                 .scale_max = 2};
     ax_joint_result joint = {0};
     ax_progress_part first, second;
-    ax_status status = ax_solve_apart(&problem, AX_FORM_OVERLAP * unit, flat, deployed,
-                                      ax_progress_within(&first, progress, 0, 0.4), &joint, error);
+    ax_status status =
+        solve_clear(f, &problem, flat, deployed, ax_progress_within(&first, progress, 0, 0.4), &joint, error);
     if (status == AX_OK && !joint.converged)
         status = ax_form_fail_joint(f, &joint, error);
     if (status == AX_OK) {
@@ -206,18 +255,15 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
         design->report.joint_steps = joint.steps;
         for (int h = 0; h < n; ++h)
             design->supports[h] = holds[h].kind != AX_HOLD_FREE;
+        ax_curve** lines = hold_arches(f, (const double(*)[3])deployed, holds);
         int held = 0;
         for (int h = 0; h < n; ++h)
             held += holds[h].kind != AX_HOLD_FREE;
         bool loaded = ax_form_hangs(f) && held >= 3;
         if (loaded) {
             ax_error trouble = {0};
-            ax_curve** lines = hold_arches(f, (const double(*)[3])deployed, holds);
             ax_status simulated = ax_design_simulate_held(design, &f->dynamics.load, holds,
                                                           ax_progress_within(&second, progress, 0.4, 1), &trouble);
-            for (int k = 0; lines[k]; ++k)
-                ax_curve_free(lines[k]);
-            ax_free(lines);
             if (simulated == AX_CANCELLED)
                 status = ax_fail(error, AX_CANCELLED, "Cancelled.");
             else if (simulated != AX_OK)
@@ -236,6 +282,9 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
                 snprintf(finish->reason, sizeof finish->reason,
                          "Fewer than three hinges are held, so nothing can hang.");
         }
+        for (int k = 0; lines[k]; ++k)
+            ax_curve_free(lines[k]);
+        ax_free(lines);
         moved b = distance(n, 3, before[0], f->deployed[0], unit);
         ax_free(before);
         finish->flat_moved_rms = a.rms, finish->flat_moved_max = a.max;

@@ -4,6 +4,12 @@
 #include <math.h>
 #include <string.h>
 
+const char* ax_curve_kind_name(ax_curve_kind kind)
+{
+    static const char* const names[] = {"line", "circle", "ellipse", "polyline", "spline"};
+    return names[kind];
+}
+
 const char* ax_held_kind_name(ax_held_kind kind)
 {
     static const char* const names[] = {"plane", "plane given", "line",   "circle",   "curve",
@@ -81,17 +87,17 @@ ax_curve* ax_curve_of_shape(const ax_curve_shape* s)
 static ax_status check_shape(const ax_curve_shape* shape, ax_error* error)
 {
     static const struct {
-        const char* name;
         int least, most;
-    } wanted[] = {{"line", 2, 2}, {"circle", 3, 3}, {"ellipse", 3, 3}, {"polyline", 2, 100000}, {"spline", 2, 100000}};
+    } wanted[] = {{2, 2}, {3, 3}, {3, 3}, {2, 100000}, {2, 100000}};
     int k = shape->kind;
+    const char* name = ax_curve_kind_name(shape->kind);
     if (shape->count < wanted[k].least || shape->count > wanted[k].most)
-        return ax_fail(error, AX_USAGE, "A %s needs %s%d points, %d are given.", wanted[k].name,
+        return ax_fail(error, AX_USAGE, "A %s needs %s%d points, %d are given.", name,
                        wanted[k].most > wanted[k].least ? "at least " : "", wanted[k].least, shape->count);
     for (int p = 0; p < shape->count; ++p)
         for (int c = 0; c < 3; ++c)
             if (!isfinite(shape->points[p][c]))
-                return ax_fail(error, AX_USAGE, "Point %d of the %s is no number.", p, wanted[k].name);
+                return ax_fail(error, AX_USAGE, "Point %d of the %s is no number.", p, name);
     return AX_OK;
 }
 

@@ -6,6 +6,7 @@
 #include "constraint/cyclic.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // Area of each hole over that of the cyclic polygon with its sides; 1 where the sides reach no polygon.
@@ -245,23 +246,28 @@ static int group_size(const ax_form_constraint* c)
 
 static void measure_held(ax_form* f, ax_form_report* r)
 {
-    static const char* const rim_names[] = {"free", "fixed", "slide"};
     bool hangs = ax_form_hangs(f), ready = !f->stale;
     bool slides = hangs && !ax_form_shares(f); // under the load; else in the shape
     const double(*x)[3] = (const double(*)[3])(hangs ? f->simulated : f->deployed);
     double mean = r->edge;
     r->held = AX_NEW0(ax_held_figure, f->rim_count + f->held_count + 1);
+    r->boundary_names = ax_alloc((size_t)f->rim_count + 1, sizeof *r->boundary_names);
+    int parts = 0;
+    for (int k = 0; k < f->rim_count; ++k)
+        parts += f->rim[k].kind != AX_RIM_FREE;
     for (int k = 0; k < f->rim_count; ++k) {
         if (f->rim[k].kind == AX_RIM_FREE)
             continue;
+        char* name = r->boundary_names[r->held_count];
+        snprintf(name, sizeof *r->boundary_names, parts > 1 ? "boundary %d" : "boundary", r->held_count + 1);
+        bool fixed = f->rim[k].kind == AX_RIM_FIXED, loaded = fixed ? hangs : slides;
         ax_held_figure* to = r->held + r->held_count++;
-        *to = (ax_held_figure){.name = "boundary",
-                               .kind = rim_names[f->rim[k].kind],
+        *to = (ax_held_figure){.name = name,
+                               .kind = fixed ? "fixed" : ax_curve_kind_name(f->rim[k].curve.kind),
                                .count = f->rim[k].count,
                                .hinge = -1,
                                .supports = true};
         to->residual = rim_residual(f, k, x, &to->hinge);
-        bool fixed = f->rim[k].kind == AX_RIM_FIXED, loaded = fixed ? hangs : slides;
         const ax_solver* s = ready ? (loaded ? f->hang : f->shape) : NULL;
         const ax_form_groups* g = loaded ? &f->hang_groups : &f->shape_groups;
         to->multiplier = s && g->rim ? largest_multiplier(s, g->rim[k], fixed ? f->rim[k].count : 1) / mean : 0;
@@ -390,8 +396,9 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
     *r =
         (ax_form_report){.exact = f->exact, .iterations = f->iterations, .growth = f->growth, .scale_off_triangle = -1};
     r->edge = ax_form_sides_mean(f);
-    r->flat_error = ax_form_flat_error(f);
     r->deployed_error = moved ? ax_form_deployed_error(f) : NAN;
+    r->flat_error =
+        f->exact ? r->deployed_error : ax_form_flat_error(f); // exact panels have the sizes that they came to
     r->simulated_error = hangs ? ax_form_simulated_error(f) : NAN;
     ax_mouth_measure mouths = ax_measure_mouths(linkage, flat);
     r->mouth_min = mouths.min_deg * AX_PI / 180;
@@ -427,6 +434,7 @@ void ax_form_measure(ax_form* f, ax_form_report* r)
 void ax_form_report_free(ax_form_report* r)
 {
     ax_free(r->held);
+    ax_free(r->boundary_names);
     ax_free(r->findings);
     *r = (ax_form_report){0};
 }

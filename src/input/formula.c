@@ -270,11 +270,24 @@ static void parse_name(parser* p)
             parse_call(p, &functions[k], name);
             return;
         }
-    char what[400] = "there is no such name; the variables are";
+    enum { FUNCTIONS = sizeof functions / sizeof *functions };
+    const char** known = ax_alloc((size_t)p->variable_count + FUNCTIONS + 1, sizeof *known);
+    int count = 0;
+    for (int k = 0; k < p->variable_count; ++k)
+        known[count++] = p->variables[k];
+    known[count++] = "pi";
+    for (int k = 0; k < FUNCTIONS; ++k)
+        known[count++] = functions[k].name;
+    char what[400], word[32];
+    snprintf(word, sizeof word, "%.*s", (int)length, name);
+    const char* nearest = length < sizeof word && length > 1 ? ax_nearest_word(word, count, known) : NULL;
+    snprintf(what, sizeof what, "there is no such name%s%s; the variables are", nearest ? ", did you mean " : "",
+             nearest ? nearest : "");
     for (int k = 0; k < p->variable_count; ++k) {
         size_t used = strlen(what);
         snprintf(what + used, sizeof what - used, "%s %s", k ? "," : "", p->variables[k]);
     }
+    ax_free(known);
     fail(p, name, what);
 }
 

@@ -38,18 +38,12 @@ static json_t* text_or_null(const char* text)
 
 // ---- the document -------------------------------------------------------------------------------------------------------------
 
-static const char* curve_word(ax_curve_kind kind)
-{
-    static const char* const words[] = {"line", "circle", "ellipse", "polyline", "spline"};
-    return words[kind];
-}
-
 static json_t* curve(const ax_curve_shape* shape)
 {
     json_t* points = json_array();
     for (int k = 0; k < shape->count; ++k)
         json_array_append_new(points, describe_point(shape->points[k]));
-    return json_pack("{s:s, s:b, s:f, s:o}", "kind", curve_word(shape->kind), "closed", shape->closed, "fillet",
+    return json_pack("{s:s, s:b, s:f, s:o}", "kind", ax_curve_kind_name(shape->kind), "closed", shape->closed, "fillet",
                      shape->fillet, "points", points);
 }
 
