@@ -257,7 +257,7 @@ void ax_form_free(ax_form* f)
                       f->holes,   f->prescribed, f->rim,       f->held,     f->sets,           f->underlays,
                       f->flat,    f->deployed,   f->simulated, f->side,     f->underlay_names, f->clearances,
                       f->pending, f->realised,   f->opening,   f->material, f->scratch,        f->lanes,
-                      f->stretch, f->pull};
+                      f->stretch, f->pull,       f->outline};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_free(f);
@@ -276,6 +276,8 @@ ax_status ax_form_make(const ax_form_start* start, ax_form** out, ax_error* erro
     if (status != AX_OK)
         return status;
     ax_form* f = ax_form_over(&lattice, start->unit);
+    f->outline_count = start->outline_count;
+    f->outline = ax_copy(start->outline, (size_t)start->outline_count, sizeof *start->outline);
     for (int t = 0; t < f->lattice.linkage.triangle_count; ++t) {
         f->prescribed[t] = start->scale;
         for (int k = 0; k < 3; ++k)

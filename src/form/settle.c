@@ -22,8 +22,9 @@ enum {
     STALLED = 450 // iterations without better edges: they cannot be right
 };
 static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 2e-3, good_error = 5e-3, balance_error = 0.03;
-static const double block_step = 2e-4; // in lattice spacings
-static const double astray = 4;        // steps so many times longer after a jump than before it: it is taken back
+static const double block_step = 2e-4;  // in lattice spacings
+static const double coarse_share = 0.3; // of the time, where a coarser sheet settles first
+static const double astray = 4;         // steps so many times longer after a jump than before it: it is taken back
 static const char shaping[] = "Shaping the sheet", loading[] = "Loading the sheet";
 
 // While a fresh sheet opens, its load leans on it, spread evenly: what lies between a painted dome and a rim with too little room for it
@@ -229,7 +230,7 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     ax_form_twist(f);
     if (!ax_form_shares(f))
         ax_solver_reset_multipliers(f->shape);
-    bool fresh = false;
+    bool fresh = false, nested = false, going = true;
     double lo = INFINITY, hi = -INFINITY;
     for (int h = 0; h < n; ++h)
         lo = fmin(lo, f->deployed[h][2]), hi = fmax(hi, f->deployed[h][2]);
@@ -237,7 +238,12 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
         ax_form_shares(f) && (ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0 || ax_form_left_over(f));
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
         ax_form_restart(f, 0.05), fresh = true;
-    if (fresh) { // panels that give way before the holes are open settle for a flatter shape, and leave it slowly
+    ax_progress_part part;
+    if (fresh && iterations == 0)
+        going = ax_form_nest(f, ax_progress_within(&part, progress, 0, coarse_share), &nested);
+    const ax_progress* own = nested ? ax_progress_within(&part, progress, coarse_share, 1) : progress;
+    if (fresh &&
+        !nested) { // panels that give way before the holes are open settle for a flatter shape, and leave it slowly
         bool leans = ax_form_hangs(f) && ax_form_shares(f);
         ax_form_allow_give(f, false);
         if (leans)
@@ -250,13 +256,14 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
         }
     }
     double half = ax_form_hangs(f) ? 0.5 : 1;
-    bool going = iterations == 0 && ax_form_shares(f)
-                     ? shape_sheet(f, progress, half)
-                     : run(f, true, iterations > 0 ? iterations : FLAT_ITERATIONS,
-                           iterations > 0 ? iterations : MOST_ITERATIONS, progress, 0, half);
+    if (going && iterations == 0 && ax_form_shares(f))
+        going = shape_sheet(f, own, half);
+    else if (going)
+        going = run(f, true, iterations > 0 ? iterations : FLAT_ITERATIONS,
+                    iterations > 0 ? iterations : MOST_ITERATIONS, own, 0, half);
     ax_form_measure_sides(f);
     if (going && ax_form_hangs(f))
-        going = load_sheet(f, iterations, progress);
+        going = load_sheet(f, iterations, own);
     if (going)
         f->turned = ax_form_turns_over(f);
     else

@@ -18,6 +18,14 @@ static const double hole_weight = 0.1, fair_weight = 0.1, held_fair_weight = 0.0
                     load_strain = 0.1, multiplier_cap = 2;
 static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
 
+// Whatever yields, over what it weighs in sheets of 600 panels, those with multipliers at 1. The stiffness of folds grows with the square of
+// the number of panels. Were the others to stand still, it would outweigh them, and multipliers would come to their cap; were they to
+// grow as much, soft modes would take long: half way between, all kinds of sheets come to rest.
+static double softness_of(const ax_form* f)
+{
+    return 1 / sqrt(fmax(1, ax_form_fineness(f)));
+}
+
 void ax_form_drop_solvers(ax_form* f)
 {
     if (f->stale && !f->shape)
@@ -73,8 +81,7 @@ static int add(ax_solver* s, const char* type, int each, int count, const int* h
 // Fair rows: `near` of neighbours, `bend` of three, and `wide` of every second hinge, which slack holes do not bend as they make kagome
 // lines zigzag. The last one is the stiffness of a length of the design, not of a panel: without, finer sheets fold more finely where
 // there is too much of them. Third differences are a^3 of those of the surface, a the spacing, and 1 / a^2 in number: weights that
-// grow with a^-4, the square of the number of panels, mean the same at every size. `wide` is that of 600 panels, and grows with
-// the power `growth` of their number.
+// grow with a^-4, the square of the number of panels, mean the same at every size. `wide` is that of 600 panels.
 typedef struct fair_rows {
     int points, count;
     const int* hinges;
@@ -83,10 +90,11 @@ typedef struct fair_rows {
 
 enum { FAIR_KINDS = 3 };
 
-static void list_fairness(const ax_form* f, double near, double bend, double wide, double growth,
-                          fair_rows rows[FAIR_KINDS])
+static void list_fairness(const ax_form* f, double near, double bend, double wide, fair_rows rows[FAIR_KINDS])
 {
-    wide *= f->wide_share * pow(ax_form_fineness(f), growth);
+    double softness = softness_of(f);
+    near *= softness, bend *= softness;
+    wide *= softness * f->wide_share * pow(ax_form_fineness(f), 2);
     rows[0] = (fair_rows){4, f->line_count, (const int*)f->lines, near};
     rows[1] = (fair_rows){3, f->bend_count, (const int*)f->bends, bend};
     rows[2] = (fair_rows){4, wide > 0 ? f->wide_count : 0, (const int*)f->wide, wide};
@@ -104,7 +112,7 @@ static void add_fairness(ax_solver* s, int first, const fair_rows rows[FAIR_KIND
 // What is fair under load.
 static void list_hang_fairness(const ax_form* f, fair_rows rows[FAIR_KINDS])
 {
-    list_fairness(f, hang_fair_weight, hang_bend_weight, hang_wide_weight, 2, rows);
+    list_fairness(f, hang_fair_weight, hang_bend_weight, hang_wide_weight, rows);
 }
 
 void ax_form_keep_fair(const ax_form* f, ax_deploy_model* model, double scale)
@@ -235,7 +243,8 @@ void ax_form_allow_give(ax_form* f, bool allowed)
         const int* h = linkage->triangles[t];
         bool border = linkage->on_rim[h[0]] || linkage->on_rim[h[1]] || linkage->on_rim[h[2]];
         bool released = border && f->released && gives;
-        lanes[t][0] = gives ? 1 / ((released ? 3 : 1) * f->dynamics.give) : 1e6; // border panels give way more easily
+        lanes[t][0] = gives ? softness_of(f) / ((released ? 3 : 1) * f->dynamics.give)
+                            : 1e6; // border panels give way more easily
         lanes[t][1] = released ? border_skew : 0;
         lanes[t][2] = border_lo, lanes[t][3] = border_hi;
     }
@@ -283,14 +292,14 @@ static void build_shape(ax_form* f)
         int* loops = AX_NEW(int, 6 * (size_t)f->hole_count + 1);
         for (int k = 0; k < f->hole_count; ++k)
             memcpy(loops + 6 * k, linkage->hole_hinges + linkage->hole_start[f->holes[k]], 6 * sizeof *loops);
-        g->holes = add(s, "cyclic_polygon", 6, f->hole_count, loops, n, hole_weight, NULL);
+        g->holes = add(s, "cyclic_polygon", 6, f->hole_count, loops, n, hole_weight * softness_of(f), NULL);
         ax_free(loops);
         ax_solver_set_soft(s, g->holes, true);
         fair_rows rows[FAIR_KINDS];
-        if (may_fold(f)) // a little less than the square: where there is far too much, 2,500 panels settle too
-            list_fairness(f, held_fair_weight, held_bend_weight, wide_weight, 1.5, rows);
+        if (may_fold(f))
+            list_fairness(f, held_fair_weight, held_bend_weight, wide_weight, rows);
         else
-            list_fairness(f, fair_weight, bend_weight, 0, 0, rows);
+            list_fairness(f, fair_weight, bend_weight, 0, rows);
         add_fairness(s, n, rows);
         add_holders(f, s, n, false, g);
     } else
@@ -302,7 +311,8 @@ static void build_shape(ax_form* f)
     ax_solver_set_all(s, g->mouths, ax_form_lane("mouth_angle", "lo"), 2, bounds);
     ax_free(bounds);
     double size = f->lattice.spacing / f->radius;
-    g->centres = add(s, "centroid", 3, t, (const int*)linkage->triangles, 0, centre_weight * size * size, NULL);
+    g->centres =
+        add(s, "centroid", 3, t, (const int*)linkage->triangles, 0, centre_weight * size * size * softness_of(f), NULL);
     ax_solver_set_soft(s, g->centres, true);
     f->shape = s;
     ax_form_allow_give(f, true);
@@ -315,11 +325,11 @@ static void set_load_value(ax_solver* s, int load, const ax_load_type* type, con
             ax_solver_set_load_value(s, load, type->parameters[k].offset + lane, value);
 }
 
-// A load that strains the panels by `load_strain` of an edge over the whole sheet: the rigid limit does not depend on its size, the
-// number of iterations does.
+// A load that strains the panels by `load_strain` of an edge over the whole sheet, 600 of them: the rigid limit does not depend on its
+// size, the number of iterations does.
 double ax_form_load_per_area(const ax_form* f)
 {
-    return load_strain / f->radius;
+    return softness_of(f) * load_strain / f->radius;
 }
 
 static void add_load(ax_form* f, ax_solver* s)

@@ -32,6 +32,8 @@ typedef struct ax_form_groups {
 struct ax_form {
     ax_lattice lattice;
     ax_unit unit;
+    int outline_count;
+    double (*outline)[2]; // that the sheet was laid over; NULL: it comes from a design
 
     // derived from the lattice
     double centre[2], radius;      // of the sheet
@@ -175,6 +177,9 @@ void ax_form_keep_fair(const ax_form* form, ax_deploy_model* model, double scale
 // The loaded state at rest under `load`, the solver's force per area, from where the projective steps have brought it. Not balanced, and nothing
 // is changed, if it did not get there or something holds the form that Newton does not know. False if cancelled.
 bool ax_form_balance(ax_form* form, double load, const ax_progress* progress, bool* balanced);
+// Deployed states where those of a coarser sheet of the same design rest, and no multipliers; not `nested` where there is none. False if
+// cancelled.
+bool ax_form_nest(ax_form* form, const ax_progress* progress, bool* nested);
 // Iterations of the shape, flat and deployed, and of the loaded state; solvers are built.
 void ax_form_iterate_shape(ax_form* form, int iterations);
 void ax_form_iterate_hang(ax_form* form, int iterations);

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-static const char magic[8] = "axform06";
+static const char magic[8] = "axform07";
 enum { MOST = 100000000 }; // entries of any one array
 
 typedef struct stream {
@@ -227,6 +227,9 @@ static void body(stream* s, ax_form* f)
     size_t n = (size_t)f->lattice.linkage.hinge_count, t = (size_t)f->lattice.linkage.triangle_count;
     state(s, f->prescribed, t * sizeof *f->prescribed);
     state(s, f->stretch, t * sizeof *f->stretch);
+    counted(s, &f->outline_count, 0);
+    ARRAY(s, f->outline, f->outline_count);
+    reals(s, *f->outline, s->bad ? 0 : 2 * (size_t)f->outline_count);
     REAL(s, f->mouth_min);
     flag(s, &f->released);
     dynamics(s, &f->dynamics);

@@ -1,0 +1,259 @@
+// A fresh start of many panels: where a coarser sheet of the same design has come to rest. What is left over between rims folds in more
+// than one way, and which way is told by how the sheet opens. A sheet that starts where a coarser one ended folds as that one does, so
+// that shapes do not depend on the number of panels.
+#include "form/state.h"
+
+#include "base/vec.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { COARSEST = 600, LEVEL = 4, LEAST_NESTED = 900 }; // panels of the first sheet; times as many in the next
+
+// A sheet as a surface in the plane, to find places on.
+typedef struct sheet_map {
+    const ax_form* form;
+    ax_mesh cover;
+    ax_closest* tree;
+    int rim_count, *rim_hinges;
+    ax_polyline* rim;
+} sheet_map;
+
+static sheet_map* map_sheet(const ax_form* f)
+{
+    int n = f->lattice.linkage.hinge_count;
+    sheet_map* m = AX_NEW0(sheet_map, 1);
+    m->form = f;
+    m->rim_hinges = AX_NEW(int, n);
+    double(*places)[3] = ax_calloc((size_t)n, sizeof *places), (*rim)[3] = ax_alloc((size_t)n, sizeof *rim);
+    for (int h = 0; h < n; ++h)
+        memcpy(places[h], f->lattice.hinges[h], sizeof *f->lattice.hinges);
+    m->cover = ax_linkage_cover(&f->lattice.linkage, (const double(*)[3])places);
+    m->tree = ax_closest_make(&m->cover);
+    m->rim_count = ax_linkage_rim(&f->lattice.linkage, m->rim_hinges);
+    for (int k = 0; k < m->rim_count; ++k)
+        memcpy(rim[k], places[m->rim_hinges[k]], sizeof *rim);
+    m->rim = ax_polyline_make(m->rim_count, (const double(*)[3])rim);
+    ax_free(rim);
+    ax_free(places);
+    return m;
+}
+
+static void forget_map(sheet_map* m)
+{
+    ax_closest_free(m->tree);
+    ax_polyline_free(m->rim);
+    ax_mesh_free(&m->cover);
+    ax_free(m->rim_hinges);
+    ax_free(m);
+}
+
+// Values that the hinges of a sheet have, at places on it: linear on its cover, and on beyond its rim.
+static void carry(const sheet_map* m, const double (*values)[3], int count, const double (*places)[2], double (*out)[3])
+{
+    ax_mesh values_cover = ax_linkage_cover(&m->form->lattice.linkage, values);
+    int face = -1;
+    for (int k = 0; k < count; ++k) {
+        double at[3] = {places[k][0], places[k][1], 0}, ab[3], ac[3], ap[3];
+        face = ax_closest_find(m->tree, at, face).face;
+        const int* v = m->cover.faces[face];
+        ax_sub3(m->cover.positions[v[1]], m->cover.positions[v[0]], ab);
+        ax_sub3(m->cover.positions[v[2]], m->cover.positions[v[0]], ac);
+        ax_sub3(at, m->cover.positions[v[0]], ap);
+        double area = ax_cross2(ab, ac), b = ax_cross2(ap, ac) / area, c = ax_cross2(ab, ap) / area;
+        for (int d = 0; d < 3; ++d)
+            out[k][d] = (1 - b - c) * values_cover.positions[v[0]][d] + b * values_cover.positions[v[1]][d] +
+                        c * values_cover.positions[v[2]][d];
+    }
+    ax_mesh_free(&values_cover);
+}
+
+// The hinge of a sheet nearest to each of another; of its rim to those of the other's rim.
+static int* nearest_hinges(const ax_form* from, const sheet_map* to)
+{
+    const ax_linkage* linkage = &from->lattice.linkage;
+    const double(*hinges)[2] = (const double(*)[2])to->form->lattice.hinges;
+    int *nearest = AX_NEW(int, linkage->hinge_count), face = -1;
+    for (int h = 0; h < linkage->hinge_count; ++h) {
+        double at[3] = {from->lattice.hinges[h][0], from->lattice.hinges[h][1], 0}, least = INFINITY;
+        if (linkage->on_rim[h]) {
+            ax_polyline_point on = ax_polyline_find(to->rim, at);
+            nearest[h] = to->rim_hinges[(on.segment + (on.parameter > 0.5)) % to->rim_count];
+            continue;
+        }
+        face = ax_closest_find(to->tree, at, face).face;
+        for (int k = 0; k < 3; ++k) {
+            int v = to->cover.faces[face][k]; // or the middle of a hole
+            if (v < to->form->lattice.linkage.hinge_count && ax_distance2(at, hinges[v]) < least)
+                least = ax_distance2(at, hinges[v]), nearest[h] = v;
+        }
+    }
+    return nearest;
+}
+
+static void carry_factors(const sheet_map* fine, ax_form* coarse)
+{
+    const ax_form* f = fine->form;
+    int n = f->lattice.linkage.hinge_count, t = coarse->lattice.linkage.triangle_count;
+    double(*at_hinge)[3] = ax_calloc((size_t)n, sizeof *at_hinge),
+    (*at_panel)[3] = ax_alloc((size_t)t, sizeof *at_panel);
+    for (int h = 0; h < n; ++h) {
+        const int* holder = f->holder[h];
+        at_hinge[h][0] = 0.5 * (f->prescribed[holder[0]] + f->prescribed[holder[holder[1] >= 0]]);
+    }
+    carry(fine, (const double(*)[3])at_hinge, t, (const double(*)[2])coarse->centres, at_panel);
+    for (int k = 0; k < t; ++k)
+        coarse->prescribed[k] = ax_clamp(at_panel[k][0], 1, 2);
+    ax_free(at_panel);
+    ax_free(at_hinge);
+}
+
+// Of places that fine hinges are held at, the mean over those to which each coarse one is nearest.
+static void mean_places(int count, const int* hinges, const double (*places)[3], const int* to_coarse, int coarse_count,
+                        double (*mean)[3], int* members)
+{
+    memset(mean, 0, (size_t)coarse_count * sizeof *mean);
+    memset(members, 0, (size_t)coarse_count * sizeof *members);
+    for (int i = 0; i < count; ++i) {
+        int h = to_coarse[hinges[i]];
+        ++members[h];
+        for (int c = 0; c < 3; ++c)
+            mean[h][c] += (places[i][c] - mean[h][c]) / members[h];
+    }
+}
+
+// Every coarse hinge of the rim is held as the fine one nearest to it.
+static ax_status carry_rim(const sheet_map* fine, ax_form* coarse, const int* to_coarse, ax_error* error)
+{
+    const ax_form* f = fine->form;
+    const ax_linkage* linkage = &coarse->lattice.linkage;
+    int n = linkage->hinge_count, *to_fine = nearest_hinges(coarse, fine), *members = AX_NEW(int, n);
+    int* place_of = AX_NEW0(int, f->lattice.linkage.hinge_count); // in its part, from 1
+    ax_rim_part* parts = AX_NEW0(ax_rim_part, f->rim_count + 1);
+    double(*mean)[3] = ax_alloc((size_t)n, sizeof *mean);
+    for (int k = 0; k < f->rim_count; ++k) {
+        const ax_rim_part* from = f->rim + k;
+        int *hinges = AX_NEW(int, n), count = 0;
+        double(*places)[3] = ax_alloc((size_t)n, sizeof *places);
+        for (int i = 0; i < from->count; ++i)
+            place_of[from->hinges[i]] = i + 1;
+        if (from->kind == AX_RIM_FIXED)
+            mean_places(from->count, from->hinges, from->places, to_coarse, n, mean, members);
+        for (int h = 0; h < n; ++h)
+            if (linkage->on_rim[h] && place_of[to_fine[h]]) {
+                if (from->kind == AX_RIM_FIXED)
+                    memcpy(places[count], members[h] ? mean[h] : from->places[place_of[to_fine[h]] - 1],
+                           sizeof *places);
+                hinges[count++] = h;
+            }
+        for (int i = 0; i < from->count; ++i)
+            place_of[from->hinges[i]] = 0;
+        parts[k] = (ax_rim_part){from->kind, count, hinges, (const double(*)[3])places, from->curve};
+    }
+    ax_status status = ax_form_set_rim(coarse, f->rim_count, parts, error);
+    for (int k = 0; k < f->rim_count; ++k) {
+        ax_free((void*)parts[k].hinges);
+        ax_free((void*)parts[k].places);
+    }
+    ax_free(mean);
+    ax_free(parts);
+    ax_free(place_of);
+    ax_free(members);
+    ax_free(to_fine);
+    return status;
+}
+
+// Holds coarse hinges to which fine ones that are held are nearest, each once.
+static ax_status carry_constraint(const ax_form_constraint* from, ax_form* coarse, const int* to_coarse,
+                                  ax_error* error)
+{
+    int n = coarse->lattice.linkage.hinge_count, *hinges = AX_NEW(int, from->count), *members = AX_NEW(int, n);
+    int each = from->kind == AX_HELD_MIRROR ? 2 : from->kind == AX_HELD_ROTATION ? from->order : 1;
+    unsigned char* taken = AX_NEW0(unsigned char, n);
+    double(*mean)[3] = ax_alloc((size_t)n, sizeof *mean), (*places)[3] = ax_alloc((size_t)from->count, sizeof *places);
+    if (from->kind == AX_HELD_FIXED)
+        mean_places(from->count, from->hinges, from->places, to_coarse, n, mean, members);
+    ax_form_constraint c = *from;
+    c.hinges = hinges;
+    c.places = (const double(*)[3])places;
+    c.count = 0;
+    for (int k = 0; k + each <= from->count; k += each) {
+        bool fresh = true;
+        for (int i = 0; i < each; ++i)
+            fresh = fresh && !taken[to_coarse[from->hinges[k + i]]];
+        for (int i = 0; i < each && fresh; ++i) {
+            int h = to_coarse[from->hinges[k + i]];
+            memcpy(places[c.count], mean[h], sizeof *places);
+            taken[h] = 1;
+            hinges[c.count++] = h;
+        }
+    }
+    ax_status status = ax_form_put_constraint(coarse, &c, error);
+    ax_free(places);
+    ax_free(mean);
+    ax_free(taken);
+    ax_free(members);
+    ax_free(hinges);
+    return status;
+}
+
+// The same design of about `panels` panels, as laid. NULL where it holds too few for what holds it.
+static ax_form* coarsen(const ax_form* f, int panels)
+{
+    ax_form_start start = {.outline_count = f->outline_count,
+                           .outline = (const double(*)[2])f->outline,
+                           .triangles = panels,
+                           .scale = 1,
+                           .angle = f->lattice.angle,
+                           .unit = f->unit};
+    ax_form* coarse;
+    ax_error error;
+    if (ax_form_make(&start, &coarse, &error) != AX_OK)
+        return NULL;
+    sheet_map *from = map_sheet(f), *to = map_sheet(coarse);
+    int* to_coarse = nearest_hinges(f, to);
+    carry_factors(from, coarse);
+    ax_status status = carry_rim(from, coarse, to_coarse, &error);
+    for (int k = 0; k < f->held_count && status == AX_OK; ++k)
+        status = carry_constraint(f->held + k, coarse, to_coarse, &error);
+    ax_free(to_coarse);
+    forget_map(from);
+    forget_map(to);
+    coarse->dynamics = f->dynamics;
+    coarse->mouth_min = f->mouth_min;
+    coarse->released = f->released;
+    if (status == AX_OK) {
+        if (ax_form_bulge(f) < 0) // so much that it goes on to that side, and still is flat
+            for (int h = 0; h < coarse->lattice.linkage.hinge_count; ++h)
+                coarse->deployed[h][2] = coarse->lattice.linkage.on_rim[h] ? 1e-9 * coarse->radius : 0;
+        return coarse;
+    }
+    ax_form_free(coarse);
+    return NULL;
+}
+
+bool ax_form_nest(ax_form* f, const ax_progress* progress, bool* nested)
+{
+    int n = f->lattice.linkage.hinge_count, panels = COARSEST;
+    *nested = false;
+    if (f->outline_count == 0 || f->lattice.linkage.triangle_count < LEAST_NESTED)
+        return true;
+    while (2 * LEVEL * panels < f->lattice.linkage.triangle_count)
+        panels *= LEVEL;
+    ax_form* coarse = coarsen(f, panels);
+    if (!coarse)
+        return true;
+    ax_error error;
+    ax_status status = ax_form_settle(coarse, 0, progress, &error);
+    if (status == AX_OK) {
+        const double(*hinges)[2] = (const double(*)[2])f->lattice.hinges;
+        sheet_map* map = map_sheet(coarse);
+        carry(map, (const double(*)[3])coarse->deployed, n, hinges, f->deployed);
+        carry(map, (const double(*)[3])coarse->simulated, n, hinges, f->simulated);
+        forget_map(map);
+        ax_form_changed(f, false, true);
+        *nested = true;
+    }
+    ax_form_free(coarse);
+    return status != AX_CANCELLED;
+}
