@@ -140,6 +140,33 @@ static void rims_come_to_their_curve(void** state)
     }
 }
 
+// The sheet draws a hinge outwards past a corner, from which both sides of its curve lead back.
+static void what_is_drawn_past_a_corner_comes_to_lie_on_the_curve(void** state)
+{
+    (void)state;
+    draft d = make_draft(0.08, 0);
+    int out = 0;
+    for (int h = 1; h < d.n; ++h)
+        if (d.start[h][0] > d.start[out][0])
+            out = h;
+    double corner[3] = {d.start[out][0] - 0.3 * d.edge, d.start[out][1], d.start[out][2]}, points[3][3];
+    for (int k = 0; k < 3; ++k) {
+        memcpy(points[k], corner, sizeof corner);
+        points[k][0] -= k == 1 ? 0 : 0.5;
+        points[k][1] += 0.5 * (k - 1);
+    }
+    ax_curve* curve = ax_curve_polyline((const double(*)[3])points, 3, false);
+    d.places[out] = (ax_joint_place){.kind = AX_JOINT_ON_CURVE, .curve = curve};
+    ax_joint_problem problem = problem_of(&d);
+    ax_joint_result result;
+    solve(&d, &problem, &result);
+    double on[3];
+    ax_curve_nearest(curve, d.deployed[out], on);
+    assert_at_most(ax_distance3(d.deployed[out], on), 1e-10 * d.edge);
+    ax_curve_free(curve);
+    free_draft(&d);
+}
+
 static void fixed_hinges_do_not_move(void** state)
 {
     (void)state;
@@ -312,6 +339,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_any_place_the_draft_hardly_moves),
         cmocka_unit_test(rims_come_to_their_curve),
+        cmocka_unit_test(what_is_drawn_past_a_corner_comes_to_lie_on_the_curve),
         cmocka_unit_test(fixed_hinges_do_not_move),
         cmocka_unit_test(arches_become_plane),
         cmocka_unit_test(released_border_triangles_stay_within_their_bound),

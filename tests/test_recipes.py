@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Recipes as users meet them: run, operators. AUXSHELL names the program."""
 import json
+import re
 import signal
 import subprocess
 import time
@@ -223,6 +224,21 @@ class Recipes(CommandCase):
         done = run("run", self.write(taut), "-o", self.folder / "x.auxshell")
         self.assertEqual(done.returncode, 4)
         self.assertRegex(done.stderr, r"pulled taut between its supports, most at panel [A-Z]+\d+ at \(")
+
+    def test_a_corner_of_the_sheet_in_a_wide_arc_of_its_rim_is_told_and_cured(self):
+        corners = [[-2.5, -1.5, 0], [2.5, -1.5, 0], [2.5, 1.5, 0], [-2.5, 1.5, 0]]
+        for fillet in (0, 0.64):
+            sheet = [{"op": "start_rectangle", "width": 4, "height": 2.4, "triangles": 600, "scale": 1.25, "fillet": fillet},
+                     {"op": "rim_polyline", "points": corners, "fillet": 0.8}, {"op": "drape", "depth": 0.4}, {"op": "gravity"}]
+            words = self.succeed("run", self.write(sheet), "-o", self.folder / "x.auxshell")
+            told = re.findall(r"panel [A-Z]+\d+ \((-?[\d.]+), (-?[\d.]+) on the sheet\)[^(]*the sheet has a corner there", words)
+            if fillet:
+                self.assertIn("Settled after", words)
+                self.assertEqual(told, [])
+            else:
+                self.assertTrue(told, words)
+                for x, y in told:
+                    self.assertLess(abs(abs(float(x)) - 2) + abs(abs(float(y)) - 1.2), 0.4)
 
     def test_what_cannot_be_made_congruent_is_told_with_its_places_and_what_to_do(self):
         # two neighbouring hinges are held far above and far below the rim: the sheet between them cannot reach both

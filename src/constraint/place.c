@@ -561,6 +561,12 @@ ax_curve_range ax_curve_extent(const ax_curve* curve)
     return (ax_curve_range){0, curve->count, curve->closed, !straight || curve->count == 1};
 }
 
+bool ax_curve_stops(const ax_curve* curve, double t)
+{
+    ax_curve_range range = ax_curve_extent(curve);
+    return (!range.closed && (t <= range.from || t >= range.to)) || (!range.smooth && fabs(t - round(t)) < 1e-9);
+}
+
 double ax_curve_length(const ax_curve* curve, double t)
 {
     if (curve->kind == LINE)

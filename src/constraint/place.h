@@ -50,6 +50,8 @@ typedef struct ax_curve_range {
     bool smooth;     // without corners between its ends
 } ax_curve_range;
 ax_curve_range ax_curve_extent(const ax_curve* curve);
+// At t it ends, or turns a corner: a point held there has no direction in which it may move.
+bool ax_curve_stops(const ax_curve* curve, double t);
 
 // Length along the curve from its start to t, within t's range, and the t at a length: inverse to one another, monotone, and exact on
 // lines, circles and polylines; elsewhere measured along chords, within a thousandth. Closed curves go round.

@@ -33,12 +33,10 @@ static ax_slide free_directions(const ax_hold* hold, const double place[3])
         memcpy(slide.axis, hold->normal, sizeof slide.axis);
         return slide;
     }
-    ax_curve_range range = ax_curve_extent(hold->curve);
     double on[3], second[3], t = ax_curve_nearest(hold->curve, place, on);
     ax_curve_derivatives(hold->curve, t, slide.axis, second);
     double speed = ax_norm3(slide.axis);
-    bool end = (!range.closed && (t <= range.from || t >= range.to)) || (!range.smooth && fabs(t - round(t)) < 1e-9);
-    slide.freedom = end || !(speed > 0) ? AX_HELD_FAST : AX_FREE_ALONG;
+    slide.freedom = ax_curve_stops(hold->curve, t) || !(speed > 0) ? AX_HELD_FAST : AX_FREE_ALONG;
     for (int c = 0; c < 3 && speed > 0; ++c)
         slide.axis[c] /= speed;
     return slide;

@@ -152,6 +152,42 @@ static bool rim_is_held(const ax_form* f)
     return false;
 }
 
+// Is the sheet cut to a corner at a hinge where the rim that holds it is an arc? Panels would have to shrink without bound towards such a
+// corner, as the conformal map of it onto an arc does, and fold instead.
+static bool rounds_corner(const ax_form* f, int hinge)
+{
+    static const double reach = 4, least_share = 0.36, along = 1.5, least_turn = AX_PI / 3;
+    const ax_linkage* linkage = &f->lattice.linkage;
+    double spacing = f->lattice.spacing, here = 0;
+    for (int t = 0; t < linkage->triangle_count; ++t)
+        here += ax_distance2(f->centres[t], f->lattice.hinges[hinge]) < reach * spacing;
+    if (!beside_rim(f, hinge) || here > least_share * AX_PI * reach * reach * 4 / sqrt(3)) // half of them along a side
+        return false;
+    for (int k = 0; k < f->rim_count; ++k) {
+        if (f->rim[k].kind != AX_RIM_SLIDE)
+            continue;
+        int near = f->rim[k].hinges[0];
+        for (int i = 1; i < f->rim[k].count; ++i)
+            if (ax_distance2(f->lattice.hinges[f->rim[k].hinges[i]], f->lattice.hinges[hinge]) <
+                ax_distance2(f->lattice.hinges[near], f->lattice.hinges[hinge]))
+                near = f->rim[k].hinges[i];
+        if (ax_distance2(f->lattice.hinges[near], f->lattice.hinges[hinge]) > 2 * spacing)
+            continue;
+        ax_curve* curve = ax_curve_of_shape(&f->rim[k].curve);
+        double on[3], at = ax_curve_length(curve, ax_curve_nearest(curve, f->deployed[near], on)), way[2][3], second[3];
+        for (int side = 0; side < 2; ++side)
+            ax_curve_derivatives(curve, ax_curve_at_length(curve, at + (side ? along : -along) * ax_form_sides_mean(f)),
+                                 way[side], second);
+        double lengths = ax_norm3(way[0]) * ax_norm3(way[1]);
+        bool arc = lengths > 0 && ax_dot3(way[0], way[1]) > cos(least_turn) * lengths;
+        ax_curve_free(curve);
+        return arc;
+    }
+    return false;
+}
+static const char corner_words[] =
+    "the sheet has a corner there, which its rim rounds: round the outline too (fillet), or the rim less";
+
 // What to do about too much material at a hinge, and about too little.
 static const char* slacken_less(const ax_form* f, int hinge)
 {
@@ -239,10 +275,12 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
     const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
     double worst = fmax(r->flat_error, moved ? fmax(r->deployed_error, ax_form_hangs(f) ? r->simulated_error : 0) : 0);
     if (worst > settled_error) {
-        int at = most_strained(f, x);
+        int at = most_strained(f, x), hinge = linkage->triangles[at][0];
         tell(r, AX_SEVERITY_FAILURE, "unsettled", worst, settled_error, "Edges are off by %.3g %%, most at %s: %s.",
-             100 * worst, name_place(f, linkage->triangles[at][0], place),
-             f->iterations ? "the request cannot be met, or needs more steps" : "not solved yet")
+             100 * worst, name_place(f, hinge, place),
+             !f->iterations            ? "not solved yet"
+             : rounds_corner(f, hinge) ? corner_words
+                                       : "the request cannot be met, or needs more steps")
             ->triangle = at;
     }
     int unlike;
@@ -294,10 +332,12 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
     }
     int fold[2], folds = moved ? ax_form_folds(f, x, fold) : 0;
     if (folds) {
+        int hinge = linkage->triangles[fold[0]][0];
+        bool corner = rounds_corner(f, hinge);
         ax_panel_name(linkage, fold[1], other);
         tell(r, AX_SEVERITY_WARNING, "folded", folds, 0,
-             "%d pairs of neighbouring panels are folded onto each other, the first at %s with %s.", folds,
-             name_place(f, linkage->triangles[fold[0]][0], place), other);
+             "%d pairs of neighbouring panels are folded onto each other, the first at %s with %s%s%s.", folds,
+             name_place(f, hinge, place), other, corner ? ": " : "", corner ? corner_words : "");
         r->findings[r->finding_count - 1].triangle = fold[0];
         r->findings[r->finding_count - 1].other = fold[1];
     }
@@ -368,6 +408,8 @@ ax_status ax_form_fail_joint(ax_form* f, const ax_joint_result* joint, ax_error*
         used += snprintf(text + used, sizeof text - (size_t)used,
                          "where they begin edges differ by up to %.3g %%, at %s, and %d steps lead away from there.",
                          100 * ax_form_deployed_error(f), place, joint->steps);
+    if (rounds_corner(f, f->lattice.linkage.triangles[at][0]))
+        used += snprintf(text + used, sizeof text - (size_t)used, " Mind: %s.", corner_words), ++told;
     ax_form_report report;
     ax_form_measure(f, &report);
     for (size_t kind = 0; kind < sizeof kinds / sizeof *kinds && told < MOST_PLACES; ++kind) {

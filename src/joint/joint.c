@@ -277,6 +277,8 @@ static double find_places(solver* s)
             double t = ax_curve_nearest(to->curve, place, found->point);
             ax_curve_derivatives(to->curve, t, found->direction, second);
             unit_vector(found->direction);
+            if (s->settled && ax_curve_stops(to->curve, t)) // steps along one side of a corner would leave it for ever
+                memset(found->direction, 0, sizeof found->direction);
         }
         if (to->kind != AX_JOINT_FIXED) // those stand where they are held
             for (int c = 0; c < 3; ++c)
