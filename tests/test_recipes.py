@@ -7,6 +7,8 @@ import subprocess
 import time
 import unittest
 
+import numpy as np
+
 import support.tap
 from judge_design import judge
 from support.command import AUXSHELL, ROOT, CommandCase, run
@@ -132,6 +134,35 @@ class Recipes(CommandCase):
         words = self.succeed("run", self.write([*SMALL, {**underlay, "at": [0, 0, -5]}]), "-o", self.folder / "x.auxshell")
         self.assertNotIn("The shell", words)
 
+    def test_a_rim_may_be_anywhere_in_space(self):
+        """A rim that is far off, or upright, gives the shape that it gives beside the sheet."""
+        out = self.folder / "x.auxshell"
+
+        def deployed(*operators):
+            self.succeed("run", self.write(operators), "-o", out)
+            return np.array(json.loads(self.export(out))["deployed"])
+
+        def rim(**fields):
+            return {"op": "rim_circle", "radius": 1.15, **fields}
+
+        load = {"op": "inflation"}
+        here = deployed(*SMALL[:2], rim(), load)
+        far = deployed(*SMALL[:2], rim(centre=[20, -7, 5]), load)
+        self.assertLess(np.abs(far - here - [20, -7, 5]).max(), 1e-3)
+        later = deployed(*SMALL[:2], rim(), load, rim(centre=[4, 0, 0]))
+        self.assertLess(np.abs(later - here - [4, 0, 0]).max(), 1e-3)
+        upright = deployed(*SMALL[:2], rim(normal=[0, 1, 0]), load)
+        self.assertLess(np.abs(upright[:, 1] - here[:, 2]).max(), 1e-3)
+        self.assertLess(np.abs(np.hypot(upright[:, 0], upright[:, 2]) - np.hypot(here[:, 0], here[:, 1])).max(), 1e-3)
+
+    def test_a_rim_that_no_sheet_can_span_is_told(self):
+        out = self.folder / "x.auxshell"
+        rim = {"op": "rim_circle", "radius": 2.5}
+        self.assertIn("The rim's curve encloses 19.6 m2", self.succeed("run", self.write([*SMALL[:2], rim, SMALL[3]]), "-o", out))
+        done = run("run", self.write([*SMALL[:2], rim, SMALL[3], {"op": "finish"}]), "-o", out)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("even with scale factors of 2", done.stderr)
+
     def test_what_is_only_flat_says_so(self):
         words = self.succeed("run", self.write(SMALL[:2]), "-o", self.folder / "x.auxshell")
         self.assertIn("Only the flat state is solved yet", words)
@@ -167,7 +198,9 @@ class Recipes(CommandCase):
             (3, "no operators", []),
             (3, "Operator 2, formula: ", [SMALL[0], {"op": "formula", "formula": "1 +"}]),
             (3, "none.csv", [SMALL[0], {"op": "table", "file": "none.csv"}]),
-            (2, "12 to 2000000", [{"op": "start_circle", "radius": 1, "edge": 1}]),
+            (3, "gives values from 2.1", [SMALL[0], {"op": "formula", "formula": "3.1 + 0*x - 1"}]),
+            (3, "no area", [{"op": "start_outline", "points": [[0, 0], [2, 2], [2, 0], [0, 2]]}]),
+            (3, "12 to 2000000", [{"op": "start_circle", "radius": 1, "edge": 1}]),
         ):
             with self.subTest(word=word):
                 self.refuse(code, word, "run", self.write(operators), *out)

@@ -351,6 +351,13 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
                  r->held[k].residual, unit, name_place(f, r->held[k].hinge, place))
                 ->hinge = r->held[k].hinge;
     }
+    double rim = ax_form_rim_area(f), open = ax_form_open_area(f, 0);
+    if (moved && rim > AX_FORM_RIM_ROOM * open)
+        tell(r, AX_SEVERITY_WARNING, "rim", rim, open,
+             "The rim's curve encloses %.3g %s2, and fully open the sheet covers %.3g %s2, %.3g with scale factors of "
+             "2: "
+             "choose a smaller curve, paint larger scale factors, or start with a larger sheet.",
+             rim, unit, open, unit, ax_form_open_area(f, 2));
     if (r->curvature_max > 2 * AX_PI)
         tell(r, AX_SEVERITY_WARNING, "overhang", r->curvature_max, 2 * AX_PI,
              "The painted factors sum to %.0f degrees of curvature, above 360: fully open the surface turns over.",
@@ -394,7 +401,7 @@ static const ax_finding* worst_of(const ax_form_report* r, const char* kind)
 
 ax_status ax_form_fail_joint(ax_form* f, const ax_joint_result* joint, ax_error* error)
 {
-    static const char* const kinds[] = {"overlap", "flipped", "tight", "slack", "held", "folded"};
+    static const char* const kinds[] = {"rim", "overlap", "flipped", "held", "tight", "slack", "folded"};
     static const double astray = 1e-2; // left so far apart, states tell nothing: those that the solve began with do
     bool near = joint->congruence < astray;
     int at = near ? joint->congruence_at : most_strained(f, (const double(*)[3])f->deployed), told = 0;

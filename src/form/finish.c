@@ -218,6 +218,13 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
     if (f->dynamics.kind == AX_DYNAMICS_NONE)
         return ax_fail(error, AX_CANNOT_REALISE,
                        "Nothing has been deployed yet: let the form expand, hang or inflate before it is finished.");
+    double rim = ax_form_rim_area(f), open = ax_form_open_area(f, 2);
+    if (rim > AX_FORM_RIM_ROOM * open)
+        return ax_fail(
+            error, AX_CANNOT_REALISE,
+            "The rim's curve encloses %.3g %s2, and even with scale factors of 2 the sheet covers %.3g %s2 fully "
+            "open. Choose a smaller curve, or start with a larger sheet.",
+            rim, ax_unit_name(f->unit), open, ax_unit_name(f->unit));
     ax_joint_place* places = AX_NEW0(ax_joint_place, n);
     ax_hold* holds = AX_NEW0(ax_hold, n);
     list_places(f, places, holds);

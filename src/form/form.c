@@ -520,6 +520,10 @@ static void face_load(ax_form* f)
     if (!ax_form_hangs(f))
         return;
     const ax_linkage* linkage = &f->lattice.linkage;
+    ax_form_stand stand;
+    ax_form_stand_on(f, &stand);
+    if (stand.axis[2][2] < sqrt(0.5)) // upright, it has no level
+        return;
     double towards = f->dynamics.kind == AX_DYNAMICS_GRAVITY ? f->dynamics.load.direction[2] : 1, level;
     if (bulge(f, &level) * towards >= 0)
         return;

@@ -180,15 +180,17 @@ void ax_form_iterate(ax_form* f, int iterations)
 void ax_form_restart(ax_form* f, double height)
 {
     int n = f->lattice.linkage.hinge_count;
-    double up = ax_form_hangs(f)
-                    ? (f->dynamics.kind == AX_DYNAMICS_GRAVITY && f->dynamics.load.direction[2] < 0 ? -1 : 1)
-                    : (ax_form_bulge(f) < 0 ? -1 : 1);
+    ax_form_stand stand;
+    ax_form_stand_on(f, &stand);
+    bool hangs = ax_form_hangs(f), weight = f->dynamics.kind == AX_DYNAMICS_GRAVITY;
+    double side = hangs ? (weight ? ax_dot3(f->dynamics.load.direction, stand.axis[2]) : 1) : ax_form_bulge(f);
     for (int h = 0; h < n; ++h) {
         double r = ax_distance2(f->lattice.hinges[h], f->centre) / f->radius;
-        double bulge = height * f->radius * fmax(0, 1 - r * r) * up;
-        for (int c = 0; c < 2; ++c)
-            f->deployed[h][c] = f->simulated[h][c] = f->flat[h][c];
-        f->deployed[h][2] = f->simulated[h][2] = bulge;
+        double bulge = height * f->radius * fmax(0, 1 - r * r) * (side < 0 ? -1 : 1);
+        double x = f->flat[h][0] - stand.from[0], y = f->flat[h][1] - stand.from[1];
+        for (int c = 0; c < 3; ++c)
+            f->deployed[h][c] = f->simulated[h][c] =
+                stand.to[c] + x * stand.axis[0][c] + y * stand.axis[1][c] + bulge * stand.axis[2][c];
     }
     ax_form_changed(f, false, true);
 }

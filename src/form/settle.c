@@ -35,7 +35,9 @@ static void lean(ax_form* f, bool on)
     const ax_linkage* linkage = &f->lattice.linkage;
     int n = linkage->hinge_count;
     bool weight = f->dynamics.kind == AX_DYNAMICS_GRAVITY;
-    const double up[3] = {0, 0, 1}, *along = weight ? f->dynamics.load.direction : up;
+    ax_form_stand stand;
+    ax_form_stand_on(f, &stand);
+    const double* along = weight ? f->dynamics.load.direction : stand.axis[2];
     memset(f->scratch, 0, 2 * (size_t)n * sizeof *f->scratch);
     for (int t = 0; t < linkage->triangle_count; ++t) {
         double side = ax_form_side(f, t), share = sqrt(3) * side * side / 3; // it carries four times its area
@@ -225,8 +227,8 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     snapshot before = keep(f);
     ax_form_build(f);
     // The flat state starts from the twist of its factors, so that it does not depend on the way here; the deployed one starts
-    // out of the plane, where it would stay locked, and afresh where panels have folded onto each other or turned over: they would not
-    // come back.
+    // out of the plane, where it would stay locked, and afresh where panels have folded onto each other or turned over, which would not
+    // come back, and where what holds the rim is elsewhere now.
     ax_form_twist(f);
     if (!ax_form_shares(f))
         ax_solver_reset_multipliers(f->shape);
@@ -234,8 +236,8 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     double lo = INFINITY, hi = -INFINITY;
     for (int h = 0; h < n; ++h)
         lo = fmin(lo, f->deployed[h][2]), hi = fmax(hi, f->deployed[h][2]);
-    bool folded =
-        ax_form_shares(f) && (ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0 || ax_form_left_over(f));
+    bool folded = ax_form_shares(f) && (ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0 ||
+                                        ax_form_left_over(f) || ax_form_stands_elsewhere(f));
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
         ax_form_restart(f, 0.05), fresh = true;
     ax_progress_part part;

@@ -191,6 +191,19 @@ void ax_form_dragged(ax_form* form, int iterations);
 void ax_form_end_drag(ax_form* form);
 // The flat state twisted analytically to the prescribed factors.
 void ax_form_twist(ax_form* form);
+// Where a fresh sheet stands: point `from` of its flat state at `to`, its axes and its upper side along `axis`. As it lies, unless what
+// holds the rim is further off than half the sheet's radius, or its plane leans by more than 45 degrees.
+typedef struct ax_form_stand {
+    double from[2], to[3], axis[3][3];
+} ax_form_stand;
+void ax_form_stand_on(const ax_form* form, ax_form_stand* stand);
+// The deployed rim is that far from what holds it.
+bool ax_form_stands_elsewhere(const ax_form* form);
+// Area that a closed curve which holds the whole rim encloses, seen along its normal; else 0. No sheet between is smaller.
+double ax_form_rim_area(const ax_form* form);
+// Area of the sheet fully open, as painted, or with one scale factor everywhere (0: as painted).
+double ax_form_open_area(const ax_form* form, double scale);
+#define AX_FORM_RIM_ROOM 1.05 // times the open area: sizes give way, and rims end by whole panels
 // Multipliers of both solvers, counted in *count; owned by the caller. NULL if there are none.
 double* ax_form_multipliers(const ax_form* form, size_t* count);
 

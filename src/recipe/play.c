@@ -71,6 +71,8 @@ ax_status ax_recipe_apply_finished(const ax_recipe* recipe, int k, const char* f
     }
     if (status == AX_OK)
         return AX_OK;
+    if (status == AX_USAGE) // in a recipe, it is the recipe that asks for it
+        status = AX_BAD_INPUT;
     return ax_fail(error, status, "Operator %d, %s: %s", k + 1, ax_recipe_type(recipe, k)->name, inner.message);
 }
 

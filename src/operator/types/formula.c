@@ -16,7 +16,7 @@ static const ax_field fields[] = {
         arguments, formula, "Formula", .required = true,
         .doc =
             "Of x and y on the sheet, r and theta (radians) about its middle, and s, the scale factor so far. Values "
-            "below 1 and above 2 are cut off."),
+            "below 1 and above 2 are cut off; a formula that gives nothing else is refused."),
     AX_TEXT(arguments, hinges, "Region", .doc = "Selection it is confined to: panels all of whose hinges are chosen."),
 };
 
@@ -24,6 +24,7 @@ static const char* const variables[] = {"x", "y", "r", "theta", "s"};
 
 static ax_status evaluate(const ax_formula* formula, ax_sheet* sheet, ax_error* error)
 {
+    double least = INFINITY, most = -INFINITY;
     for (int t = 0; t < sheet->count; ++t) {
         const double* c = sheet->centre[t];
         double x = c[0] - sheet->middle[0], y = c[1] - sheet->middle[1];
@@ -33,8 +34,12 @@ static ax_status evaluate(const ax_formula* formula, ax_sheet* sheet, ax_error* 
             continue;
         if (!isfinite(value))
             return ax_fail(error, AX_BAD_INPUT, "The formula gives no number at x = %.4g, y = %.4g.", c[0], c[1]);
+        least = fmin(least, value), most = fmax(most, value);
         sheet->scale[t] = ax_clamp(value, 1, 2);
     }
+    if (most < 1 || least > 2)
+        return ax_fail(error, AX_BAD_INPUT,
+                       "The formula gives values from %.4g to %.4g here, and scale factors are 1 to 2.", least, most);
     return AX_OK;
 }
 
