@@ -61,7 +61,7 @@ def stroke(draw, half):
     if kind == "formula":
         return {"op": "formula", "formula": draw.choice([
             "1.3 + 0.4*exp(-(x^2+y^2)/0.5)", "r < 0.5 ? 1.9 : 1.2", "1.4 + 0.2*cos(3*theta)*r", "s + 0.2*sin(4*x)*sin(4*y)",
-            "1.9/(1 + 0.5*r^2)", "3 - r"])}
+            "1.9/(1 + 0.5*r^2)", "2.4 - r"])}
     if kind == "smooth":
         return {"op": "smooth", "amount": draw.uniform(0.05, 0.5)}
     if kind == "clamp":
