@@ -170,6 +170,40 @@ void ax_form_spare_uneven(ax_form* f)
     ax_free(uneven);
 }
 
+// The shape that all panels of the sheet have, as their corners are counted.
+static ax_panel_shape shape_of(const ax_form* f, int triangle)
+{
+    static const double equilateral = 1e-9;
+    const int* h = f->lattice.linkage.triangles[triangle];
+    ax_panel_shape s;
+    double e[3][2], a[2] = {0, 0}, b[2] = {0, 0}; // edges k to k + 1 are a w^k + b w^-k, w a third of a turn
+    for (int k = 0; k < 3; ++k) {
+        const double *from = f->lattice.hinges[h[k]], *to = f->lattice.hinges[h[(k + 1) % 3]];
+        e[k][0] = to[0] - from[0], e[k][1] = to[1] - from[1];
+        double c = cos(2 * AX_PI * k / 3) / 3, d = sin(2 * AX_PI * k / 3) / 3;
+        a[0] += c * e[k][0] + d * e[k][1], a[1] += c * e[k][1] - d * e[k][0];
+        b[0] += c * e[k][0] - d * e[k][1], b[1] += c * e[k][1] + d * e[k][0];
+        s.edge[(k + 2) % 3] = hypot(e[k][0], e[k][1]) / (0.5 * f->lattice.spacing);
+    }
+    double square = a[0] * a[0] + a[1] * a[1];
+    s.lean[0] = (b[0] * a[0] + b[1] * a[1]) / square, s.lean[1] = (b[1] * a[0] - b[0] * a[1]) / square;
+    s.size = 3 * sqrt(square) / (0.5 * f->lattice.spacing * (s.edge[0] + s.edge[1] + s.edge[2]));
+    if (hypot(s.lean[0], s.lean[1]) < equilateral) // but for rounding
+        s = (ax_panel_shape){.size = 1, .edge = {1, 1, 1}};
+    return s;
+}
+
+static void find_shapes(ax_form* f)
+{
+    bool found[2] = {false, false};
+    for (int t = 0; t < f->lattice.linkage.triangle_count && !(found[0] && found[1]); ++t) {
+        int down = f->lattice.linkage.panels[t][2] != 0;
+        if (!found[down])
+            f->panel[down] = shape_of(f, t);
+        found[down] = true;
+    }
+}
+
 ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
 {
     ax_form* f = AX_NEW0(ax_form, 1);
@@ -191,6 +225,7 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
     f->pull = AX_NEW0(double, t);
     f->scratch = ax_alloc(2 * n, sizeof *f->scratch);
     f->lanes = AX_NEW(double, 3 * t + 6 * (size_t)linkage->hole_count);
+    find_shapes(f);
     for (size_t k = 0; k < t; ++k) {
         const int* h = linkage->triangles[k];
         f->prescribed[k] = 1;
@@ -200,7 +235,7 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
             f->centre[c] += f->centres[k][c] / (double)t;
         }
         for (int c = 0; c < 3; ++c)
-            f->side[k][c] = 0.5 * f->lattice.spacing, f->stretch[k][c] = 1;
+            f->stretch[k][c] = ax_form_panel(f, (int)k)->edge[c], f->side[k][c] = ax_form_edge(f, (int)k, c);
     }
     for (size_t k = 0; k < t; ++k)
         f->radius = fmax(f->radius, ax_distance2(f->centres[k], f->centre));
@@ -281,7 +316,7 @@ ax_status ax_form_make(const ax_form_start* start, ax_form** out, ax_error* erro
     for (int t = 0; t < f->lattice.linkage.triangle_count; ++t) {
         f->prescribed[t] = start->scale;
         for (int k = 0; k < 3; ++k)
-            f->side[t][k] = ax_form_side(f, t);
+            f->side[t][k] = ax_form_edge(f, t, k);
     }
     ax_form_twist(f);
     for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)

@@ -7,12 +7,14 @@
 #include <math.h>
 #include <string.h>
 
-static const double good_fit = 0.01, corner_weight = 0.12, count_weight = 0.2, search_range = 0.08;
+static const double least_lean = 1e-9, least_shift = 1e-9, good_lean = 0.007,
+                    most_lean = 0.02; // of panels from equilateral
+static const double excess_weight = 10, corner_weight = 0.12, count_weight = 0.2, search_range = 0.08;
 enum { COUNT_ROUNDS = 6, SEARCH_STEPS = 40 };
 
 // Area, and second moments of it about its middle over the square of the area: of what proportions it is, whatever its size.
 typedef struct moments {
-    double area, xx, xy, yy;
+    double area, middle[2], xx, xy, yy;
 } moments;
 
 static moments outline_moments(const ax_outline* outline)
@@ -34,41 +36,9 @@ static moments outline_moments(const ax_outline* outline)
     m.xx = (m.xx - first[0] * first[0] / m.area) / square;
     m.xy = (m.xy - first[0] * first[1] / m.area) / square;
     m.yy = (m.yy - first[1] * first[1] / m.area) / square;
+    for (int c = 0; c < 2; ++c)
+        m.middle[c] = o[c] + first[c] / m.area;
     return m;
-}
-
-static moments sheet_moments(const ax_lattice* lattice)
-{
-    const ax_linkage* linkage = &lattice->linkage;
-    double cell =
-        sqrt(3) / 4 * lattice->spacing * lattice->spacing; // what a panel takes up, with its share of the holes
-    double first[2] = {0, 0}, xx = 0, xy = 0, yy = 0, t = linkage->triangle_count;
-    for (int k = 0; k < linkage->triangle_count; ++k) {
-        const int* h = linkage->triangles[k];
-        double x[2];
-        for (int c = 0; c < 2; ++c)
-            x[c] = (lattice->hinges[h[0]][c] + lattice->hinges[h[1]][c] + lattice->hinges[h[2]][c]) / 3 -
-                   lattice->offset[c];
-        first[0] += x[0], first[1] += x[1];
-        xx += x[0] * x[0], xy += x[0] * x[1], yy += x[1] * x[1];
-    }
-    double own = t * lattice->spacing * lattice->spacing / 24, area = t * cell, unit = cell / (area * area);
-    return (moments){.area = area,
-                     .xx = unit * (xx - first[0] * first[0] / t + own),
-                     .xy = unit * (xy - first[0] * first[1] / t),
-                     .yy = unit * (yy - first[1] * first[1] / t + own)};
-}
-
-// How much longer one way, and shorter across, a sheet is than its outline, once it has its area: half the relative change of its
-// moments, as the norm of a matrix.
-static double misfit(const ax_lattice* lattice, const moments* asked)
-{
-    moments m = sheet_moments(lattice);
-    double det = asked->xx * asked->yy - asked->xy * asked->xy;
-    double xx = (m.xx - asked->xx) / det, xy = (m.xy - asked->xy) / det, yy = (m.yy - asked->yy) / det;
-    double a = asked->yy * xx - asked->xy * xy, b = asked->yy * xy - asked->xy * yy;
-    double c = asked->xx * xy - asked->xy * xx, d = asked->xx * yy - asked->xy * xy;
-    return 0.5 * sqrt(fmax(0, a * a + 2 * b * c + d * d));
 }
 
 // Where the outline turns by more than 30 degrees; counted in *count, owned by the caller.
@@ -91,9 +61,86 @@ typedef struct fit {
     const ax_form_start* start;
     ax_outline outline;
     moments asked;
+    double middle[2]; // of its extents
     int corner_count;
     double (*corners)[2];
 } fit;
+
+// Whether a corner's last cell is missing at a rim hinge: hanging on one hinge it was left out. `other` is where its middle would be.
+static bool is_cut(const fit* f, const ax_lattice* lattice, const double other[2])
+{
+    static const double near_corner = 1.5; // spacings
+    bool near = false, inside = false;
+    for (int k = 0; k < f->corner_count && !near; ++k)
+        near = ax_distance2(other, f->corners[k]) < near_corner * lattice->spacing;
+    for (int k = 0; k < f->outline.count && near; ++k) { // even-odd rule
+        const double *a = f->outline.points[k], *b = f->outline.points[(k + 1) % f->outline.count];
+        if ((a[1] > other[1]) != (b[1] > other[1]) &&
+            other[0] < a[0] + (b[0] - a[0]) * (other[1] - a[1]) / (b[1] - a[1]))
+            inside = !inside;
+    }
+    return inside;
+}
+
+// Cells that a corner lacks are counted: where the sides are is told by the others.
+static moments sheet_moments(const fit* f, const ax_lattice* lattice)
+{
+    const ax_linkage* linkage = &lattice->linkage;
+    double cell =
+        sqrt(3) / 4 * lattice->spacing * lattice->spacing; // what a panel takes up, with its share of the holes
+    double first[2] = {0, 0}, xx = 0, xy = 0, yy = 0, t = 0;
+    for (int k = 0; k < linkage->triangle_count; ++k) {
+        const int* h = linkage->triangles[k];
+        double middle[2];
+        for (int c = 0; c < 2; ++c)
+            middle[c] = (lattice->hinges[h[0]][c] + lattice->hinges[h[1]][c] + lattice->hinges[h[2]][c]) / 3;
+        for (int i = -1; i < 3; ++i) { // the panel, and what might be beyond its rim hinges
+            double x[2] = {middle[0], middle[1]};
+            if (i >= 0) {
+                for (int c = 0; c < 2; ++c)
+                    x[c] = 2 * lattice->hinges[h[i]][c] - middle[c];
+                if (!linkage->on_rim[h[i]] || !is_cut(f, lattice, x))
+                    continue;
+            }
+            x[0] -= lattice->offset[0], x[1] -= lattice->offset[1];
+            first[0] += x[0], first[1] += x[1];
+            xx += x[0] * x[0], xy += x[0] * x[1], yy += x[1] * x[1];
+            ++t;
+        }
+    }
+    double own = t * lattice->spacing * lattice->spacing / 24, area = t * cell, unit = cell / (area * area);
+    return (moments){.area = area,
+                     .middle = {lattice->offset[0] + first[0] / t, lattice->offset[1] + first[1] / t},
+                     .xx = unit * (xx - first[0] * first[0] / t + own),
+                     .xy = unit * (xy - first[0] * first[1] / t),
+                     .yy = unit * (yy - first[1] * first[1] / t + own)};
+}
+
+// A symmetric matrix of determinant 1: half (1 + lean) along one direction, half (1 - lean) across.
+typedef struct stretching {
+    double xx, xy, yy, half, lean;
+} stretching;
+
+// That which brings the sheet to the proportions of its outline, whatever its size: S A S = B is solved by the geometric mean of the
+// inverse of A and B, and of two such matrices this is their sum over the root of its determinant.
+static stretching match(const moments* sheet, const moments* asked)
+{
+    double a = 1 / sqrt(sheet->xx * sheet->yy - sheet->xy * sheet->xy);
+    double b = 1 / sqrt(asked->xx * asked->yy - asked->xy * asked->xy);
+    stretching s = {
+        .xx = a * sheet->yy + b * asked->xx, .xy = b * asked->xy - a * sheet->xy, .yy = a * sheet->xx + b * asked->yy};
+    double root = sqrt(s.xx * s.yy - s.xy * s.xy);
+    s.xx /= root, s.xy /= root, s.yy /= root;
+    s.half = 0.5 * (s.xx + s.yy);
+    s.lean = hypot(0.5 * (s.xx - s.yy), s.xy) / s.half;
+    return s;
+}
+
+static double lean_of(const fit* f, const ax_lattice* lattice)
+{
+    moments m = sheet_moments(f, lattice);
+    return match(&m, &f->asked).lean;
+}
 
 // Proportions first; then corners, which a last row of panels that is too short cuts off: sides of the rim are known by them; then the
 // number of panels.
@@ -107,23 +154,22 @@ static double badness(const fit* f, const ax_lattice* lattice)
                 nearest = fmin(nearest, ax_distance2(lattice->hinges[h], f->corners[k]));
         missed = fmax(missed, nearest / lattice->spacing);
     }
-    double share = lattice->linkage.triangle_count / (double)f->start->triangles;
-    return misfit(lattice, &f->asked) + corner_weight * missed + count_weight * fabs(share - 1);
+    double share = lattice->linkage.triangle_count / (double)f->start->triangles, lean = lean_of(f, lattice);
+    return lean + excess_weight * fmax(0, lean - most_lean) + corner_weight * missed + count_weight * fabs(share - 1);
 }
 
 // Rows of panels are whole: 600 of them over 3 m by 1 m came out as 3.20 m by 0.94 m. Other numbers of panels near the one wanted have
-// rows that end on the outline; the lattice stays where it is, for the sake of symmetry.
+// rows that end on the outline, or nearly so; the lattice stays where it is, for the sake of symmetry.
 static void search_fit(const fit* f, ax_lattice* lattice)
 {
-    if (misfit(lattice, &f->asked) < good_fit)
+    if (lean_of(f, lattice) < good_lean)
         return;
-    double best = badness(f, lattice), offset[2] = {lattice->offset[0], lattice->offset[1]};
-    double spacing = sqrt(4 * f->asked.area / (sqrt(3) * f->start->triangles));
+    double best = badness(f, lattice), spacing = sqrt(4 * f->asked.area / (sqrt(3) * f->start->triangles));
     for (int k = -SEARCH_STEPS; k <= SEARCH_STEPS; ++k) {
         ax_lattice other;
         ax_error ignored;
-        double stretch = 1 + search_range * k / SEARCH_STEPS;
-        if (ax_lattice_lay(&f->outline, spacing * stretch, f->start->angle, offset, false, &other, &ignored) != AX_OK)
+        double tried = spacing * (1 + search_range * k / SEARCH_STEPS);
+        if (ax_lattice_lay(&f->outline, tried, f->start->angle, f->middle, false, &other, &ignored) != AX_OK)
             continue;
         double score = badness(f, &other);
         if (score < best) {
@@ -135,14 +181,27 @@ static void search_fit(const fit* f, ax_lattice* lattice)
     }
 }
 
-// Whether the rim stands within the outline or without told a dome's rise at 600 panels from that at 2,500. The sheet as a whole is
-// scaled to the area of its outline.
-static void fit_area(ax_lattice* lattice, double area)
+// Whether the rim stands within the outline or without told a dome's rise at 600 panels from that at 2,500, and rows that miss a rectangle's
+// side by 1 % are felt as much. The sheet as a whole is stretched to area and second moments of its outline: panels stay alike, and
+// turn as equilateral ones do.
+static void fit_outline(const fit* f, ax_lattice* lattice)
 {
-    double scale = sqrt(area / sheet_moments(lattice).area);
-    for (int h = 0; h < lattice->linkage.hinge_count; ++h)
-        for (int c = 0; c < 2; ++c)
-            lattice->hinges[h][c] = lattice->offset[c] + scale * (lattice->hinges[h][c] - lattice->offset[c]);
+    const moments m = sheet_moments(f, lattice), *asked = &f->asked;
+    stretching s = match(&m, asked);
+    const double *from = m.middle, *to = asked->middle, scale = sqrt(asked->area / m.area);
+    if (s.lean < least_lean) // as symmetric as its outline
+        s.xx = s.yy = 1, s.xy = 0;
+    if (ax_distance2(from, to) < least_shift * lattice->spacing)
+        from = to = f->middle;
+    if (s.lean > most_lean) {
+        double half = 1 / sqrt(1 - most_lean * most_lean), share = most_lean * half / (s.lean * s.half);
+        s.xx = half + share * (s.xx - s.half), s.xy *= share, s.yy = half + share * (s.yy - s.half);
+    }
+    for (int h = -1; h < lattice->linkage.hinge_count; ++h) {
+        double *x = h < 0 ? lattice->offset : lattice->hinges[h], d[2] = {x[0] - from[0], x[1] - from[1]};
+        x[0] = to[0] + scale * (s.xx * d[0] + s.xy * d[1]);
+        x[1] = to[1] + scale * (s.xy * d[0] + s.yy * d[1]);
+    }
     lattice->spacing *= scale;
 }
 
@@ -186,15 +245,18 @@ ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error*
         ax_lattice_free(lattice);
         spacing *= sqrt(share);
     }
-    if (status == AX_OK && !(start->edge > 0) && !start->inside) {
-        fit f = {.start = start, .outline = outline, .asked = outline_moments(&outline)};
+    if (status == AX_OK) {
+        bool fits = !(start->edge > 0) && !start->inside;
+        fit f = {
+            .start = start, .outline = outline, .asked = outline_moments(&outline), .middle = {middle[0], middle[1]}};
         f.corners = list_corners(&outline, &f.corner_count);
-        search_fit(&f, lattice);
-        fit_area(lattice, f.asked.area);
+        if (fits)
+            search_fit(&f, lattice);
+        ax_lattice_renumber(lattice); // names of panels without minus signs
+        if (fits)
+            fit_outline(&f, lattice);
         ax_free(f.corners);
     }
     ax_free(points);
-    if (status == AX_OK)
-        ax_lattice_renumber(lattice); // names of panels without minus signs
     return status;
 }

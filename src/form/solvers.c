@@ -289,6 +289,9 @@ static void build_shape(ax_form* f)
         // an edge row weighs a third: the three of them are the panel
         g->panels = ax_solver_add(s, type_of("shared_panel"), 12, t, points[0], 1.0 / 3, NULL);
         ax_free(points);
+        for (int k = 0; k < t; ++k)
+            for (int c = 0; c < 2; ++c)
+                ax_solver_set(s, g->panels, k, ax_form_lane("shared_panel", "lean") + c, ax_form_panel(f, k)->lean[c]);
         int* loops = AX_NEW(int, 6 * (size_t)f->hole_count + 1);
         for (int k = 0; k < f->hole_count; ++k)
             memcpy(loops + 6 * k, linkage->hole_hinges + linkage->hole_start[f->holes[k]], 6 * sizeof *loops);

@@ -23,6 +23,14 @@ typedef struct ax_holder {
     ax_place place; // of either
 } ax_holder;
 
+// Of a panel whose edges k to k + 1 are a (w^k + lean w^-k), w a third of a turn: not equilateral where the sheet has been stretched to fit its
+// outline.
+typedef struct ax_panel_shape {
+    double lean[2]; // a complex number
+    double size;    // |a| over the mean edge
+    double edge[3]; // over half the lattice spacing, edge k opposite corner k
+} ax_panel_shape;
+
 // Groups of the solvers below, -1 where there is none.
 typedef struct ax_form_groups {
     int panels, mouths, centres, holes;
@@ -44,11 +52,12 @@ struct ax_form {
     int bend_count, (*bends)[3];   // three in a row
     int wide_count, (*wide)[4];    // every second one of seven in a row, on some lines
     double wide_share;             // rows that one of them stands for
+    ax_panel_shape panel[2];       // of the sheet: pointing up, and down
     int hole_count, *holes;        // those with six hinges, by number
 
     // asked
     double* prescribed;
-    // Edge k of each panel over lambda spacing / 2: 1 but in sheets of designs, which are uneven, at the rim above all.
+    // Edge k of each panel over lambda spacing / 2: near 1 but in sheets of designs, which are uneven, at the rim above all.
     double (*stretch)[3];
     double mouth_min; // radians
     bool released;
@@ -112,6 +121,11 @@ static inline double ax_form_fineness(const ax_form* f)
     return f->lattice.linkage.triangle_count / 600.0;
 }
 
+static inline const ax_panel_shape* ax_form_panel(const ax_form* f, int triangle)
+{
+    return f->panel + (f->lattice.linkage.panels[triangle][2] != 0);
+}
+
 // Ends of edge k of a panel.
 static inline void ax_form_edge_ends(const ax_form* f, int triangle, int k, int* a, int* b)
 {
@@ -136,7 +150,7 @@ static inline double ax_form_side(const ax_form* f, int triangle)
 
 enum { AX_FORM_LEAST = 12, AX_FORM_MOST = 2000000 }; // panels
 
-// The sheet: a lattice over the outline, of its area and as near as whole panels come to its proportions.
+// The sheet: a lattice over the outline, stretched by up to 2 % to its area and proportions where no edge is given.
 ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error* error);
 
 // Everything but the linkage, allocated for it and derived from it; states at the sheet.

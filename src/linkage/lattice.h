@@ -6,7 +6,7 @@
 
 typedef struct ax_lattice {
     ax_linkage linkage;
-    double (*hinges)[2]; // midpoints of the lattice edges: the fully open, undeformed linkage; owned
+    double (*hinges)[2]; // midpoints of the lattice edges: the fully open, undeformed linkage, perhaps stretched; owned
     double spacing;      // distance of lattice points; panels here have edges of half of it
     double angle;        // radians, lattice rows against the x axis
     double offset[2];    // of lattice point (0, 0)
@@ -39,7 +39,9 @@ int (*ax_linkage_mouths(const ax_linkage* linkage, int* count))[3];
 double ax_mouth_angle(const double previous[2], const double hinge[2], const double next[2]);
 
 // The flat state that expands by `scale` (per triangle, >= 1) to the undeformed lattice: every triangle turned about its centre by
-// -+acos(1/scale), up and down triangles in opposite sense, and enlarged by scale; each hinge is the mean of its two corners.
+// -+acos(1/scale), up and down triangles in opposite sense, and enlarged by scale; each hinge is the mean of its two corners. Of a
+// stretched lattice, too: its up and down triangles are alike but for half a turn, so that lattice vectors 2 v become
+// R(t) v + R(-t) v = 2 cos(t) v in whichever direction.
 void ax_lattice_twist(const ax_lattice* lattice, const double* scale, double (*flat)[2]);
 
 // Two triangles of each hinge, -1 where there is none on the rim. Owned by the caller, hinge_count pairs.

@@ -4,6 +4,7 @@
 #include "linkage/lattice.h"
 
 #include <math.h>
+#include <string.h>
 
 ax_hinges ax_hinges_make(const ax_linkage* linkage)
 {
@@ -210,6 +211,16 @@ static double bulge(const ax_form_view* view, int count, const int* rim, int i, 
     return n[0] && n[1] ? sum[1] / n[1] - sum[0] / n[0] : 0;
 }
 
+// A corner that lacks its last panels turns at both ends of its cut, two hinges apart: it is where its middle one is.
+static void join_cut(int count, unsigned char* corner)
+{
+    for (int k = 0; k < count; ++k)
+        if (corner[k] && corner[(k + 2) % count]) {
+            corner[k] = corner[(k + 2) % count] = 0;
+            corner[(k + 1) % count] = 1;
+        }
+}
+
 int ax_select_corners(const ax_form_view* view, int count, const int* rim, int** corners)
 {
     double middle[2], most = -1, tolerance = view->spacing;
@@ -231,6 +242,7 @@ int ax_select_corners(const ax_form_view* view, int count, const int* rim, int**
     corner[first] = corner[second] = 1;
     split(view, count, rim, first, second > first ? second : second + count, tolerance, corner);
     split(view, count, rim, second, first > second ? first : first + count, tolerance, corner);
+    join_cut(count, corner);
     int* found = AX_NEW(int, count);
     for (int k = 0; k < count; ++k)
         if (corner[k])
@@ -245,4 +257,53 @@ int ax_select_corners(const ax_form_view* view, int count, const int* rim, int**
     }
     *corners = found;
     return n;
+}
+
+void ax_select_nearest(const ax_form_view* view, const ax_hinges* among, const double at[2], double distance,
+                       ax_hinges* set)
+{
+    static const double as_near = 1e-6; // spacings: on the axes of symmetric sheets there are two
+    double nearest = INFINITY;
+    for (int k = 0; k < among->count; ++k)
+        nearest = fmin(nearest, ax_distance2(view->sheet[among->hinges[k]], at));
+    for (int k = 0; k < among->count; ++k)
+        if (ax_distance2(view->sheet[among->hinges[k]], at) <= fmax(distance, nearest + as_near * view->spacing))
+            ax_hinges_add(set, among->hinges[k]);
+}
+
+// The line that fits the inner parts of a side best, as a point and a direction; at its ends the lattice may be cut.
+static void fit_side(const ax_form_view* view, int count, const int* rim, int i, int j, double point[2],
+                     double along[2])
+{
+    double xx = 0, xy = 0, yy = 0;
+    int n = 0;
+    point[0] = point[1] = 0;
+    for (int pass = 0; pass < 2; ++pass)
+        for (int k = i + (j - i) / 6 + 1; k < j - (j - i) / 6; ++k) {
+            const double* x = view->sheet[rim[k % count]];
+            if (!pass) {
+                ++n;
+                for (int c = 0; c < 2; ++c)
+                    point[c] += (x[c] - point[c]) / n;
+            } else {
+                double u = x[0] - point[0], v = x[1] - point[1];
+                xx += u * u, xy += u * v, yy += v * v;
+            }
+        }
+    double turn = 0.5 * atan2(2 * xy, xx - yy);
+    along[0] = cos(turn), along[1] = sin(turn);
+}
+
+void ax_select_corner_place(const ax_form_view* view, int count, const int* rim, int n, const int* corners, int k,
+                            double place[2])
+{
+    double a[2], b[2], u[2], v[2];
+    int before = corners[(k + n - 1) % n], at = corners[k], after = corners[(k + 1) % n];
+    fit_side(view, count, rim, before, at > before ? at : at + count, a, u);
+    fit_side(view, count, rim, at, after > at ? after : after + count, b, v);
+    double turn = ax_cross2(u, v), between[2] = {b[0] - a[0], b[1] - a[1]}, t = ax_cross2(between, v) / turn;
+    for (int c = 0; c < 2; ++c)
+        place[c] = a[c] + t * u[c];
+    if (!(ax_distance2(place, view->sheet[rim[at]]) < view->spacing))
+        memcpy(place, view->sheet[rim[at]], 2 * sizeof *place);
 }

@@ -33,6 +33,13 @@ void ax_select_near(const ax_form_view* view, int count, const double (*points)[
 enum { AX_CORNERS_MOST = 12 };
 int ax_select_corners(const ax_form_view* view, int count, const int* rim, int** corners);
 
+// Of these hinges those within a distance of a point of the sheet, in their order; of none the nearest, with all that are as near.
+void ax_select_nearest(const ax_form_view* view, const ax_hinges* among, const double at[2], double distance,
+                       ax_hinges* set);
+// Where the sides that meet at corner k, of those in ax_select_corners, would meet as straight lines; the hinge there if they are not.
+void ax_select_corner_place(const ax_form_view* view, int count, const int* rim, int n, const int* corners, int k,
+                            double place[2]);
+
 // Names that users give to selections and constraints: 1 to 48 letters, digits, "-", "_" or ".", the first a letter.
 bool ax_is_name(const char* text);
 extern const char ax_no_name[]; // the sentence that says so

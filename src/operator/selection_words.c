@@ -80,16 +80,23 @@ static ax_status take_hinge(reader* r, int* hinge)
     return AX_OK;
 }
 
-// "(a, b, ...)": exactly `count` numbers.
-static ax_status take_numbers(reader* r, int count, double* values)
+// "(a, b, ...)": `least` to `most` numbers; those that are left out stay as they are.
+static ax_status take_up_to(reader* r, int least, int most, double* values)
 {
-    for (int k = 0; k < count; ++k) {
+    for (int k = 0; k < most; ++k) {
         skip_space(r);
+        if (k >= least && *r->at == ')')
+            break;
         if (!take(r, k ? "," : "(") || !take_number(r, &values[k]))
             return refuse(r, "numbers in parentheses, separated by commas, are wanted");
     }
     skip_space(r);
     return take(r, ")") ? AX_OK : refuse(r, "a closing parenthesis is wanted");
+}
+
+static ax_status take_numbers(reader* r, int count, double* values)
+{
+    return take_up_to(r, count, count, values);
 }
 
 static ax_status take_pair(reader* r, int* a, int* b)
@@ -113,77 +120,164 @@ static double turn_by(double angle)
     return rest < 0 ? rest + 360 : rest;
 }
 
-// What follows "rim:": "30..60" by angle, "side2", "12>40" by hinges. `rim` is cut down to that.
-static ax_status take_part(reader* r, ax_hinges* rim)
+// "near(x, y)", the nearest of these hinges, or "near(x, y, distance)", all within it.
+static ax_status take_near(reader* r, const ax_hinges* among, ax_hinges* set)
 {
-    int from = 0, many = rim->count; // a run of places, cyclic
-    if (take(r, "side")) {
-        char* end;
-        long side = isdigit((unsigned char)*r->at) ? strtol(r->at, &end, 10) : 0;
-        int *corners, n = ax_select_corners(&r->view, rim->count, rim->hinges, &corners);
-        if (n == 0)
-            return ax_fail(
-                r->error, AX_BAD_INPUT,
-                "The rim has no sides: it turns nowhere sharply, or more than %d times. Choose a part by angle, "
-                "such as rim:0..90.",
-                AX_CORNERS_MOST);
-        if (side >= 1 && side <= n) {
-            from = corners[side - 1];
-            many = (corners[side % n] - from + rim->count) % rim->count + 1;
-            r->at = end;
-        }
-        ax_free(corners);
-        if (side < 1 || side > n)
-            return ax_fail(r->error, AX_BAD_INPUT, "The rim has sides 1 to %d.", n);
-    } else {
-        reader ahead = *r;
-        double lo, hi;
-        if (take_number(&ahead, &lo) && take(&ahead, "..")) {
-            if (!take_number(&ahead, &hi))
-                return r->at = ahead.at, refuse(r, "a second angle in degrees is wanted");
-            *r = ahead;
-            double middle[2];
-            ax_sheet_middle(&r->view, middle);
-            ax_hinges part = ax_hinges_make(r->view.linkage);
-            int start = -1; // in order from the first angle on: a run may go on past 0 degrees
-            double smallest = INFINITY;
-            for (int k = 0; k < rim->count; ++k) {
-                double beyond = turn_by(ax_angle_about(middle, r->view.sheet[rim->hinges[k]]) - lo);
-                if (beyond < smallest)
-                    smallest = beyond, start = k;
-            }
-            for (int k = 0; k < rim->count; ++k) {
-                int h = rim->hinges[(start + k) % rim->count];
-                if (turn_by(ax_angle_about(middle, r->view.sheet[h]) - lo) <= (hi > lo ? hi - lo : turn_by(hi - lo)))
-                    ax_hinges_add(&part, h);
-            }
-            ax_hinges_free(rim);
-            *rim = part;
-            return AX_OK;
-        }
-        int a, b;
-        ax_status status = take_hinge(r, &a);
-        if (status == AX_OK && !take(r, ">"))
-            status = refuse(r, "a part of the rim is wanted: 0..90 (degrees), side1, or 12>40 (hinges)");
-        if (status == AX_OK)
-            status = take_hinge(r, &b);
-        if (status != AX_OK)
-            return status;
-        if (!rim->in[a] || !rim->in[b])
-            return ax_fail(r->error, AX_BAD_INPUT, "Hinge %d is not on the rim.", rim->in[a] ? b : a);
-        int to = 0;
-        for (int k = 0; k < rim->count; ++k) {
-            from = rim->hinges[k] == a ? k : from;
-            to = rim->hinges[k] == b ? k : to;
-        }
-        many = (to - from + rim->count) % rim->count + 1;
-    }
+    double v[3] = {0, 0, 0};
+    ax_status status = take_up_to(r, 2, 3, v);
+    if (status == AX_OK && v[2] < 0)
+        status = refuse(r, "a distance of 0 or more is wanted");
+    if (status == AX_OK)
+        ax_select_nearest(&r->view, among, v, v[2], set);
+    return status;
+}
+
+// Places in `rim` of corners; their number in *count, owned by the caller.
+static ax_status find_corners(const reader* r, const ax_hinges* rim, int** corners, int* count)
+{
+    *count = ax_select_corners(&r->view, rim->count, rim->hinges, corners);
+    return *count > 0
+               ? AX_OK
+               : ax_fail(r->error, AX_BAD_INPUT,
+                         "The rim has no sides and corners: it turns nowhere sharply, or more than %d times. Choose "
+                         "a part by angle, such as rim:0..90, or near a point, such as rim:near(1,0,0.2).",
+                         AX_CORNERS_MOST);
+}
+
+// The number that follows "side" or "corner", 1 to n.
+static ax_status take_count(reader* r, const char* of, int n, int* number)
+{
+    char* end = (char*)r->at;
+    long value = isdigit((unsigned char)*r->at) ? strtol(r->at, &end, 10) : 0;
+    if (value < 1 || value > n)
+        return ax_fail(r->error, AX_BAD_INPUT, "The rim has %s 1 to %d.", of, n);
+    r->at = end;
+    *number = (int)value;
+    return AX_OK;
+}
+
+// Puts a run of places, cyclic, in place of the rim.
+static void keep_run(const reader* r, int from, int to, ax_hinges* rim)
+{
     ax_hinges part = ax_hinges_make(r->view.linkage);
+    int many = (to - from + rim->count) % rim->count + 1;
     for (int k = 0; k < many; ++k)
         ax_hinges_add(&part, rim->hinges[(from + k) % rim->count]);
     ax_hinges_free(rim);
     *rim = part;
+}
+
+static ax_status take_side(reader* r, ax_hinges* rim)
+{
+    int *corners, n, side = 0;
+    ax_status status = find_corners(r, rim, &corners, &n);
+    if (status == AX_OK && (status = take_count(r, "sides", n, &side)) == AX_OK)
+        keep_run(r, corners[side - 1], corners[side % n], rim);
+    ax_free(corners);
+    return status;
+}
+
+static ax_status take_corner(reader* r, ax_hinges* rim)
+{
+    int *corners, n, corner = 0;
+    double at[2], distance = 0;
+    ax_hinges part = ax_hinges_make(r->view.linkage);
+    ax_status status = find_corners(r, rim, &corners, &n);
+    if (status == AX_OK)
+        status = take_count(r, "corners", n, &corner);
+    if (status == AX_OK && *r->at == '(')
+        status = take_numbers(r, 1, &distance);
+    if (status == AX_OK && distance < 0)
+        status = refuse(r, "a distance of 0 or more is wanted");
+    if (status == AX_OK) {
+        ax_select_corner_place(&r->view, rim->count, rim->hinges, n, corners, corner - 1, at);
+        ax_select_nearest(&r->view, rim, at, distance, &part);
+    }
+    ax_free(corners);
+    ax_hinges_free(rim);
+    *rim = part;
+    return status;
+}
+
+static ax_status take_angles(reader* r, double lo, ax_hinges* rim)
+{
+    double hi;
+    if (!take_number(r, &hi))
+        return refuse(r, "a second angle in degrees is wanted");
+    double middle[2];
+    ax_sheet_middle(&r->view, middle);
+    ax_hinges part = ax_hinges_make(r->view.linkage);
+    int start = -1; // in order from the first angle on: a run may go on past 0 degrees
+    double smallest = INFINITY;
+    for (int k = 0; k < rim->count; ++k) {
+        double beyond = turn_by(ax_angle_about(middle, r->view.sheet[rim->hinges[k]]) - lo);
+        if (beyond < smallest)
+            smallest = beyond, start = k;
+    }
+    for (int k = 0; k < rim->count; ++k) {
+        int h = rim->hinges[(start + k) % rim->count];
+        if (turn_by(ax_angle_about(middle, r->view.sheet[h]) - lo) <= (hi > lo ? hi - lo : turn_by(hi - lo)))
+            ax_hinges_add(&part, h);
+    }
+    ax_hinges_free(rim);
+    *rim = part;
     return AX_OK;
+}
+
+// One end of a run of the rim: a hinge by its number, or that nearest to a point, (x, y); its place in the rim.
+static ax_status take_end(reader* r, const ax_hinges* rim, int* place)
+{
+    int hinge = -1;
+    ax_status status;
+    skip_space(r);
+    if (*r->at == '(') {
+        double at[2];
+        status = take_numbers(r, 2, at);
+        for (int k = 0; k < rim->count && status == AX_OK; ++k)
+            if (hinge < 0 || ax_distance2(r->view.sheet[rim->hinges[k]], at) < ax_distance2(r->view.sheet[hinge], at))
+                hinge = rim->hinges[k];
+    } else
+        status = take_hinge(r, &hinge);
+    if (status == AX_OK && !rim->in[hinge])
+        status = ax_fail(r->error, AX_BAD_INPUT, "Hinge %d is not on the rim.", hinge);
+    for (int k = 0; k < rim->count; ++k)
+        *place = rim->hinges[k] == hinge ? k : *place;
+    return status;
+}
+
+// What follows "rim:": "30..60" by angle, "side2", "corner2(0.1)", "near(1,0)", "12>40" or "(1,0)>(0,1)" from hinge to hinge. `rim` is
+// cut down to that.
+static ax_status take_part(reader* r, ax_hinges* rim)
+{
+    if (take(r, "side"))
+        return take_side(r, rim);
+    if (take(r, "corner"))
+        return take_corner(r, rim);
+    if (take(r, "near")) {
+        ax_hinges part = ax_hinges_make(r->view.linkage);
+        ax_status status = take_near(r, rim, &part);
+        ax_hinges_free(rim);
+        *rim = part;
+        return status;
+    }
+    reader ahead = *r;
+    double lo;
+    if (take_number(&ahead, &lo) && take(&ahead, "..")) {
+        r->at = ahead.at;
+        return take_angles(r, lo, rim);
+    }
+    int from = 0, to = 0;
+    if (!isdigit((unsigned char)*r->at) && *r->at != '(')
+        return refuse(r, "a part of the rim is wanted: 0..90 (degrees), side1, corner1, near(1,0), 12>40 (hinges) or "
+                         "(1,0)>(0,1) (points)");
+    ax_status status = take_end(r, rim, &from);
+    if (status == AX_OK && (skip_space(r), !take(r, ">")))
+        status = refuse(r, "> and the other end of a part of the rim are wanted");
+    if (status == AX_OK)
+        status = take_end(r, rim, &to);
+    if (status == AX_OK)
+        keep_run(r, from, to, rim);
+    return status;
 }
 
 static ax_status take_rim(reader* r, ax_hinges* set)
@@ -299,11 +393,19 @@ static ax_status take_factor(reader* r, ax_hinges* set)
             ax_select_near(&r->view, 1, (const double(*)[2])v, false, v[2], set);
         return status;
     }
+    if (take(r, "near")) {
+        ax_hinges every = ax_hinges_make(r->view.linkage);
+        for (int h = 0; h < r->view.linkage->hinge_count; ++h)
+            ax_hinges_add(&every, h);
+        status = take_near(r, &every, set);
+        ax_hinges_free(&every);
+        return status;
+    }
     if (isdigit((unsigned char)*r->at))
         return take_range(r, set);
     if (isupper((unsigned char)*r->at) || (*r->at == '-' && isupper((unsigned char)r->at[1])))
         return take_panel(r, set);
-    return refuse(r, "all, rim, a hinge, a panel, a #name, line(), curve(), box() or disc() is wanted");
+    return refuse(r, "all, rim, a hinge, a panel, a #name, line(), curve(), box(), disc() or near() is wanted");
 }
 
 // factor & factor & ...: those in all of them, in the order of the first.

@@ -1,11 +1,11 @@
-// shared_panel: keeps the flat and the deployed copy of one panel congruent, and equilateral or nearly so. In the complex
+// shared_panel: keeps the flat and the deployed copy of one panel congruent, and equilateral, leaning or nearly so. In the complex
 // numbers of its plane a triangle has edges a w^k + b w^-k, w a third of a turn: a its size and turn, b what it lacks to be
 // equilateral. Each copy gives an a and a b; the common panel has their mean.
 //
 // With `give` the common size is drawn to `side` as well: panels then give way to what holds them, and no further.
 #include "constraint/eigen3.h"
 
-enum { SIDE, DRAW, SKEW, LO, HI, LANES };
+enum { SIDE, DRAW, SKEW, LO, HI, LEAN, LANES = LEAN + 2 };
 
 static const ax_parameter parameters[] = {
     {.name = "side",
@@ -26,7 +26,7 @@ static const ax_parameter parameters[] = {
      .lanes = 1},
     {.name = "skew",
      .unit = "1",
-     .doc = "largest deviation from equilateral, |b| / |a|; 0: equilateral",
+     .doc = "largest deviation from its shape, |b / a - lean|; 0: none",
      .standard = 0,
      .least = 0,
      .most = 1,
@@ -48,6 +48,14 @@ static const ax_parameter parameters[] = {
      .most = 1e12,
      .offset = HI,
      .lanes = 1},
+    {.name = "lean",
+     .unit = "1",
+     .doc = "b / a that it is drawn to, as a complex number, turned to edge 0-1; 0: equilateral",
+     .standard = 0,
+     .least = -0.5,
+     .most = 0.5,
+     .offset = LEAN,
+     .lanes = 2},
 };
 
 static void rest(ax_lane* restrict block, int points, const ax_lane3* restrict x)
@@ -64,8 +72,9 @@ static void rest(ax_lane* restrict block, int points, const ax_lane3* restrict x
     }
 }
 
-// a and b of three edges given as complex numbers, and the turn a / |a|.
-AX_INLINE void split(const double e[3][2], double a[2], double b[2], double turn[2], double* size)
+// a and b of three edges given as complex numbers; and the turn and the size of the panel of this lean that is nearest to them: along
+// a + b lean', as its edges are the turn times w^k + lean w^-k.
+AX_INLINE void split(const double e[3][2], const double lean[2], double a[2], double b[2], double turn[2], double* size)
 {
     const double h = 0.8660254037844386467637231707529362;
     // w^-1 = -1/2 - h i, w^-2 = -1/2 + h i
@@ -73,9 +82,10 @@ AX_INLINE void split(const double e[3][2], double a[2], double b[2], double turn
     double sx = e[0][0] - 0.5 * (e[1][0] + e[2][0]), sy = e[0][1] - 0.5 * (e[1][1] + e[2][1]);
     a[0] = (sx + h * dy) / 3, a[1] = (sy - h * dx) / 3;
     b[0] = (sx - h * dy) / 3, b[1] = (sy + h * dx) / 3;
-    *size = sqrt(a[0] * a[0] + a[1] * a[1]);
-    double inverse = 1 / (*size > 0 ? *size : 1);
-    turn[0] = *size > 0 ? a[0] * inverse : 1, turn[1] = a[1] * inverse;
+    double along[2] = {a[0] + b[0] * lean[0] + b[1] * lean[1], a[1] + b[1] * lean[0] - b[0] * lean[1]};
+    double length = sqrt(along[0] * along[0] + along[1] * along[1]), inverse = 1 / (length > 0 ? length : 1);
+    turn[0] = length > 0 ? along[0] * inverse : 1, turn[1] = along[1] * inverse;
+    *size = length / (1 + lean[0] * lean[0] + lean[1] * lean[1]);
 }
 
 static void project(const ax_lane* restrict block, const ax_place* place, int points, const ax_lane3* restrict y,
@@ -95,21 +105,22 @@ static void project(const ax_lane* restrict block, const ax_place* place, int po
         open[0][0] = r[0], open[0][1] = 0, open[1][0] = r[1], open[1][1] = r[2];
         open[2][0] = -r[0] - r[1], open[2][1] = -r[2];
 
-        double a[2], b[2], turn[2], size, a3[2], b3[2], turn3[2], size3;
-        split((const double(*)[2])flat, a, b, turn, &size);
-        split((const double(*)[2])open, a3, b3, turn3, &size3);
+        double a[2], b[2], turn[2], size, a3[2], b3[2], turn3[2], size3, lean[2] = {block[LEAN][l], block[LEAN + 1][l]};
+        split((const double(*)[2])flat, lean, a, b, turn, &size);
+        split((const double(*)[2])open, lean, a3, b3, turn3, &size3);
         double draw = block[DRAW][l], side = block[SIDE][l];
         double common = (size + size3 + 2 * draw * side) / (2 + 2 * draw);
         double lo = block[LO][l] * side, hi = block[HI][l] * side;
         common = common < lo ? lo : (common > hi ? hi : common);
 
-        // b turned back to its panel, drawn to none as the size is to `side`, and bounded
+        // b turned back to its panel, without its lean, drawn to none as the size is to `side`, and bounded
         double share = 1 / (2 + 2 * draw);
-        double bx = share * (b[0] * turn[0] + b[1] * turn[1] + b3[0] * turn3[0] + b3[1] * turn3[1]);
-        double by = share * (b[1] * turn[0] - b[0] * turn[1] + b3[1] * turn3[0] - b3[0] * turn3[1]);
+        double leans = size + size3;
+        double bx = share * (b[0] * turn[0] + b[1] * turn[1] + b3[0] * turn3[0] + b3[1] * turn3[1] - leans * lean[0]);
+        double by = share * (b[1] * turn[0] - b[0] * turn[1] + b3[1] * turn3[0] - b3[0] * turn3[1] - leans * lean[1]);
         double most = block[SKEW][l] * common, length = sqrt(bx * bx + by * by);
         double s = length > most ? most / length : 1;
-        bx *= s, by *= s;
+        bx = s * bx + common * lean[0], by = s * by + common * lean[1];
 
         // edges of the common panel: common w^k + (bx + i by) w^-k
         double edge[3][2] = {{common + bx, by},
@@ -129,7 +140,8 @@ static void project(const ax_lane* restrict block, const ax_place* place, int po
 
 const ax_constraint_type ax_constraint_shared_panel = {
     .name = "shared_panel",
-    .doc = "Keeps the flat and the deployed copy of a panel congruent and equilateral, or nearly so: edges 0-1, 2-3, "
+    .doc = "Keeps the flat and the deployed copy of a panel congruent and equilateral, leaning or nearly so: edges "
+           "0-1, 2-3, "
            "4-5 are the flat copy in the plane, counter-clockwise, 6-7, 8-9, 10-11 the same edges deployed (nearest if "
            "equilateral; with skew the turns are those of the nearest equilateral panel).",
     .reference = "Bouaziz et al. 2012, Shape-Up (similar); Konakovic-Lukovic et al. 2018, section 5 (shared lengths)",
