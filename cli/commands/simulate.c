@@ -54,7 +54,7 @@ static const command_option options[] = {
     {.name = "--support",
      .value = "SELECTION",
      .text = "hinges held at their deployed places, in words as in recipes: rim, rim/3, rim:0..90, 0-12,40,77, "
-             "box(-1,0,1,2), #arch and others",
+             "rim:corner2, rim:near(2,0), box(-1,0,1,2), #arch and others",
      .kind = OPTION_TEXT,
      .fallback = "that of the document",
      .offset = offsetof(arguments, support)},

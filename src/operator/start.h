@@ -23,8 +23,9 @@ extern const char* const ax_unit_words[3];
      .lo = 12,                                                                                                         \
      .hi = 2000000,                                                                                                    \
      .offset = offsetof(T, start.triangles),                                                                           \
-     .doc =                                                                                                            \
-         "Wanted number of panels, unless their edge is given; whole rows may take up to a quarter more or fewer."},   \
+     .doc = "Wanted number of panels, unless their edge is given; whole rows may take up to a quarter more or fewer. " \
+            "The sheet is stretched "                                                                                  \
+            "to its outline, so that edges differ by up to 2 % from their mean until it is finished."},                \
         {.name = "edge",                                                                                               \
          .title = "Panel edge",                                                                                        \
          .unit = "length",                                                                                             \

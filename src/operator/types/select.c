@@ -7,7 +7,7 @@ typedef struct arguments {
 static const ax_field fields[] = {
     AX_TEXT(arguments, name, "Name", .required = true, .doc = "Name of the selection; one of this name is replaced."),
     AX_TEXT(arguments, hinges, "Hinges", .required = true,
-            .doc = "Selection in words, such as rim:0..90 or line(3,40)."),
+            .doc = "Selection in words, such as rim:0..90, rim:near(1,0) or line(3,40)."),
 };
 
 static const char* check(const void* given, int* field)
