@@ -144,6 +144,75 @@ static ax_blocks grid_of_blocks(int side, double (*place)[3])
     return blocks;
 }
 
+static void four_right_hand_sides_are_solved_like_one(void** state)
+{
+    (void)state;
+    enum { SIDE = 20, SIDES = 4 };
+    double(*place)[3] = ax_alloc(SIDE * SIDE, sizeof *place);
+    ax_blocks blocks = grid_of_blocks(SIDE, place);
+    size_t n = (size_t)blocks.matrix.n;
+    double *b = AX_NEW(double, SIDES*n), *one = AX_NEW(double, n);
+    ax_random random = {5};
+    for (size_t u = 0; u < SIDES * n; ++u)
+        b[u] = ax_random_uniform(&random, -1, 1);
+    ax_block_factor* factor = ax_block_factor_make(&blocks, (const double(*)[3])place, NULL);
+    assert_true(ax_block_factor_run(factor, &blocks));
+    ax_block_factor_solve(factor, b + 2 * n, one, 1);
+    ax_block_factor_solve(factor, b, b, SIDES);
+    assert_memory_equal(one, b + 2 * n, n * sizeof *one);
+    ax_block_factor_free(factor);
+    ax_blocks_free(&blocks);
+    ax_free(place);
+    ax_free(b);
+    ax_free(one);
+}
+
+// Two nodes far apart whose own curvature is negative: moves of energy below zero, each largest at one of them.
+static void where_blocks_are_negative_is_told_alike_by_any_number_of_threads(void** state)
+{
+    (void)state;
+    enum { SIDE = 60 };
+    double(*place)[3] = ax_alloc(SIDE * SIDE, sizeof *place);
+    ax_blocks blocks = grid_of_blocks(SIDE, place);
+    const int soft[] = {7 * SIDE + 9, 51 * SIDE + 40};
+    for (int k = 0; k < 2; ++k)
+        blocks.matrix.value[blocks.matrix.start[3 * soft[k] + 1]] = -20;
+    size_t n = (size_t)blocks.matrix.n;
+    double *x = AX_NEW(double, n), *ax = AX_NEW(double, n), *first = AX_NEW0(double, AX_PANELS_TREES*n);
+    for (int threads = 1; threads <= 3; ++threads) {
+        ax_pool* pool = ax_pool_make(threads);
+        ax_block_factor* factor = ax_block_factor_make(&blocks, (const double(*)[3])place, pool);
+        assert_false(ax_block_factor_run(factor, &blocks));
+        bool met[2] = {false, false};
+        for (size_t part = 0; part < AX_PANELS_TREES; ++part) {
+            if (!ax_block_factor_negative(factor, (int)part, x))
+                continue;
+            double energy = 0, most = 0;
+            int at = 0;
+            ax_sparse_multiply(&blocks.matrix, x, ax, 1);
+            for (size_t u = 0; u < n; ++u) {
+                energy += x[u] * ax[u];
+                if (fabs(x[u]) > most)
+                    most = fabs(x[u]), at = (int)u;
+            }
+            assert_true(energy < 0);
+            for (int k = 0; k < 2; ++k)
+                met[k] = met[k] || at == 3 * soft[k] + 1;
+            if (threads == 1)
+                memcpy(first + part * n, x, n * sizeof *x);
+            else
+                assert_memory_equal(first + part * n, x, n * sizeof *x);
+        }
+        assert_true(met[0] || met[1]); // both, if they are not of one part
+        ax_block_factor_free(factor);
+        ax_pool_free(pool);
+    }
+    ax_blocks_free(&blocks);
+    void* arrays[] = {place, x, ax, first};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
+        ax_free(arrays[k]);
+}
+
 static void blocks_are_solved_alike_by_any_number_of_threads(void** state)
 {
     (void)state;
@@ -164,7 +233,7 @@ static void blocks_are_solved_alike_by_any_number_of_threads(void** state)
         assert_false(ax_block_factor_run(factor, &blocks)); // and the factor stays usable
         blocks.matrix.value[blocks.matrix.start[n / 2]] = keep;
         assert_true(ax_block_factor_run(factor, &blocks));
-        ax_block_factor_solve(factor, b, back);
+        ax_block_factor_solve(factor, b, back, 1);
         for (int u = 0; u < n; ++u)
             assert_near(back[u], x[u], 1e-12);
         if (threads == 1)
@@ -217,6 +286,8 @@ int main(void)
         cmocka_unit_test(every_kind_of_factor_solves),
         cmocka_unit_test(an_indefinite_matrix_is_reported_and_the_factor_stays_usable),
         cmocka_unit_test(blocks_are_solved_alike_by_any_number_of_threads),
+        cmocka_unit_test(four_right_hand_sides_are_solved_like_one),
+        cmocka_unit_test(where_blocks_are_negative_is_told_alike_by_any_number_of_threads),
         cmocka_unit_test(curved_rows_are_ordered_as_well_as_straight_ones),
     };
     return cmocka_run_group_tests_name("linalg", tests, NULL, NULL);

@@ -549,7 +549,7 @@ static void solve_step(solver* s, double mu)
             add_scaled(s->step[i], g, y);
             add_scaled(s->step[j], g, -y);
         }
-        ax_block_factor_solve(s->factor, s->step[0], s->step[0]);
+        ax_block_factor_solve(s->factor, s->step[0], s->step[0], 1);
         double left = 0;
         for (int e = 0; e < s->edges; ++e) {
             int i, j;

@@ -3,10 +3,14 @@
 #include "linalg/order.h"
 #include "linalg/panels.h"
 
+#include <assert.h>
+
+enum { LANES = sizeof(ax_vec4) / sizeof(double) };
+
 struct ax_block_factor {
     ax_pool* pool;
     ax_panels* panels;
-    ax_vec4* x; // in elimination order; a solve has one right-hand side, the first lane
+    ax_vec4* x; // in elimination order
     int unknowns;
 };
 
@@ -41,14 +45,26 @@ bool ax_block_factor_run(ax_block_factor* f, const ax_blocks* blocks)
     return ax_panels_factor(f->panels, &blocks->matrix, f->pool);
 }
 
-void ax_block_factor_solve(ax_block_factor* f, const double* b, double* x)
+void ax_block_factor_solve(ax_block_factor* f, const double* b, double* x, int columns)
 {
     const int* order = ax_panels_order(f->panels);
-    for (int k = 0; k < f->unknowns; ++k) {
-        f->x[k][0] = b[order[k]];
-        f->x[k][1] = f->x[k][2] = f->x[k][3] = 0;
-    }
+    size_t n = (size_t)f->unknowns;
+    assert(columns >= 1 && columns <= LANES);
+    for (size_t k = 0; k < n; ++k)
+        for (int c = 0; c < LANES; ++c)
+            f->x[k][c] = c < columns ? b[(size_t)c * n + (size_t)order[k]] : 0;
     ax_panels_solve(f->panels, f->pool, f->x);
-    for (int k = 0; k < f->unknowns; ++k)
-        x[order[k]] = f->x[k][0];
+    for (size_t k = 0; k < n; ++k)
+        for (int c = 0; c < columns; ++c)
+            x[(size_t)c * n + (size_t)order[k]] = f->x[k][c];
+}
+
+bool ax_block_factor_negative(ax_block_factor* f, int part, double* x)
+{
+    const int* order = ax_panels_order(f->panels);
+    if (!ax_panels_negative(f->panels, part, f->x))
+        return false;
+    for (int u = 0; u < f->unknowns; ++u)
+        x[order[u]] = f->x[u][0];
+    return true;
 }

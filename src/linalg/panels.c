@@ -141,6 +141,24 @@ void ax_panels_solve(const ax_panels* s, ax_pool* pool, ax_vec4* x)
     ax_pool_run(pool, backward_part, &p, s->parts);
 }
 
+bool ax_panels_negative(const ax_panels* s, int part, ax_vec4* x)
+{
+    int column = part <= s->parts ? s->failed[part] : -1, panel = s->part_panel[part];
+    if (column < 0)
+        return false;
+    memset(x, 0, ax_panels_rows(s) * sizeof *x);
+    while (column >= s->panels[panel].first + s->panels[panel].width)
+        ++panel;
+    x[column][0] = 1;
+    pass p = {s, x};
+    if (part == s->parts) {
+        backward(&p, s->part_panel[s->parts], panel + 1);
+        ax_pool_run(NULL, backward_part, &p, s->parts);
+    } else
+        backward(&p, s->part_panel[part], panel + 1);
+    return true;
+}
+
 void ax_panels_free(ax_panels* s)
 {
     if (!s)

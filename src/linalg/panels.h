@@ -22,6 +22,11 @@ void ax_panels_free(ax_panels* panels);
 // one thread.
 bool ax_panels_factor(ax_panels* panels, const ax_sparse* matrix, ax_pool* pool);
 
+// After a factorisation that has failed: x'Ax <= 0, in elimination order and in the first lane, that moves only what the part 0 ..
+// AX_PANELS_TREES - 1 of the tree had eliminated when it came upon its first pivot that was not positive. False if it came upon none.
+enum { AX_PANELS_TREES = 9 };
+bool ax_panels_negative(const ax_panels* panels, int part, ax_vec4* x);
+
 // order[k]: the unknown that is eliminated k-th. Solves work in this order, so that callers can keep their data in it.
 const int* ax_panels_order(const ax_panels* panels);
 double ax_panels_entries(const ax_panels* panels);

@@ -4,7 +4,6 @@
 #include "linalg/panels_layout.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <string.h>
 
 // Columns eliminated before the rest of the front is updated, columns that one task updates, rows that are updated at once.
@@ -26,7 +25,6 @@ typedef struct factoring {
     const double *value, *diagonal;
     double** update; // per supernode: what it left
     double* stack[AX_PANEL_PARTS + 1];
-    atomic_bool failed;
     const struct kernels* kernels;
 } factoring;
 
@@ -37,6 +35,8 @@ typedef struct front {
     size_t stride;
     int size, from, to; // rows; columns from .. to - 1 are to be subtracted
     int first;          // first column to update
+    int column;         // of the matrix, the first one
+    int* failed;        // its part's
     int done;           // rows above have their columns from .. to - 1 eliminated
     double* packed;     // rows from `first` on of the columns to subtract: strips of rows, in each column after column
 } front;
@@ -91,8 +91,9 @@ static void pack_strip(const front* f, int strip)
     }
 }
 
-// The triangle of columns j .. j + width - 1, up to date with all columns before. False: not positive.
-static bool eliminate_triangle(const front* f, int j, int width)
+// The triangle of columns j .. j + width - 1, up to date with all columns before. What comes after the first pivot that is not positive
+// stands for nothing.
+static void eliminate_triangle(const front* f, int j, int width)
 {
     double *column[4], scale;
     for (int c = 0; c < width; ++c) {
@@ -100,29 +101,29 @@ static bool eliminate_triangle(const front* f, int j, int width)
         for (int b = 0; b < c; ++b)
             for (int r = c; r < width; ++r)
                 column[c][j + r] -= column[b][j + r] * column[b][j + c];
-        if (!(column[c][j + c] > 0))
-            return false;
+        if (!(column[c][j + c] > 0)) {
+            if (*f->failed < 0)
+                *f->failed = f->column + j + c;
+            column[c][j + c] = 1;
+        }
         column[c][j + c] = sqrt(column[c][j + c]);
         scale = 1 / column[c][j + c];
         for (int r = c + 1; r < width; ++r)
             column[c][j + r] *= scale;
     }
-    return true;
 }
 
-// Columns from .. to - 1 in the rows to be done. False: not positive.
-static bool eliminate(const front* f)
+// Columns from .. to - 1 in the rows to be done.
+static void eliminate(const front* f)
 {
     front before = *f; // columns before those in hand
     for (int j = f->from; j < f->to; j += 4) {
         int width = f->to - j < 4 ? f->to - j : 4;
         before.to = j;
         f->kernels->update_columns(&before, j, j + width, 0, f->done);
-        if (!eliminate_triangle(f, j, width))
-            return false;
+        eliminate_triangle(f, j, width);
         f->kernels->eliminate_rows(f, j, width, j + width, f->done);
     }
-    return true;
 }
 
 // The same columns in a few strips of rows below, if they are not done, while they are in the cache; then packs them.
@@ -144,15 +145,14 @@ static void eliminate_strips(void* context, int task)
 }
 
 // Eliminates the first `width` columns and updates the rest.
-static bool factor_front(front* f, int width, ax_pool* pool)
+static void factor_front(front* f, int width, ax_pool* pool)
 {
     for (f->from = 0; f->from < width; f->from = f->to) {
         f->to = f->first = width - f->from > BLOCK ? f->from + BLOCK : width;
         bool shared = f->size - f->to >= LEAST_SHARED;
         // vectors must end where the shared rows begin
         f->done = shared && f->to % ROUND == 0 ? f->to : rows_stored(f);
-        if (!eliminate(f))
-            return false;
+        eliminate(f);
         if (!shared)
             f->kernels->update_columns(f, f->to, f->size, 0, rows_stored(f));
         else {
@@ -160,7 +160,6 @@ static bool factor_front(front* f, int width, ax_pool* pool)
             ax_pool_run(pool, f->kernels->update_task, f, (f->size - f->to + COLUMNS_PER_TASK - 1) / COLUMNS_PER_TASK);
         }
     }
-    return true;
 }
 
 // Where column j begins in a lower triangle of `rows` rows, column by column.
@@ -241,13 +240,15 @@ static void factor_part(void* context, int part)
     int *local = AX_NEW(int, s->n), *place = AX_NEW(int, s->n), *run = AX_NEW(int, s->n);
     size_t held = 0;
     f->stack[part] = AX_NEW(double, s->stack_size[part]);
-    for (int visit = s->part_node[part]; visit < s->part_node[part + 1] && !atomic_load(&f->failed); ++visit) {
+    for (int visit = s->part_node[part]; visit < s->part_node[part + 1] && s->failed[part] < 0; ++visit) {
         int k = s->depth_first[visit];
         const ax_supernode* node = s->nodes + k;
         front own = {.kernels = f->kernels,
                      .entry = entry,
                      .stride = ax_front_stride(node),
                      .size = node->width + node->rows,
+                     .column = node->first,
+                     .failed = s->failed + part,
                      .packed = packed};
         ax_pool* pool = part == s->parts && own.size >= LEAST_SHARED ? f->pool : NULL;
         for (int c = 0; c < own.size; ++c) { // the lower triangle, from a whole vector on
@@ -278,10 +279,7 @@ static void factor_part(void* context, int part)
             }
             ax_pool_run(pool, add_columns, &(moving){&own, s, child, f->update[c], place, run}, tasks_to_move(child));
         }
-        if (!factor_front(&own, node->width, pool)) {
-            atomic_store(&f->failed, true);
-            break;
-        }
+        factor_front(&own, node->width, pool);
         moving m = {&own, s, node, f->update[k] = f->stack[part] + held, NULL, NULL};
         ax_pool_run(pool, store_panel, &m, (node->width + AX_PANEL_WIDTH - 1) / AX_PANEL_WIDTH);
         ax_pool_run(pool, leave_columns, &m, tasks_to_move(node));
@@ -327,13 +325,19 @@ bool ax_panels_factor(ax_panels* s, const ax_sparse* matrix, ax_pool* pool)
                    .diagonal = diagonal,
                    .update = AX_NEW(double*, s->node_count),
                    .kernels = best_kernels()};
-    ax_pool_run(pool, factor_part, &f, s->parts);
-    if (!f.failed)
+    bool sound = true;
+    for (int part = 0; part <= s->parts; ++part)
+        s->failed[part] = -1;
+    ax_pool_run(pool, factor_part, &f,
+                s->parts); // each up to its own failure, so that it is the same on every number of threads
+    for (int part = 0; part < s->parts; ++part)
+        sound = sound && s->failed[part] < 0;
+    if (sound)
         factor_part(&f, s->parts);
     for (int part = 0; part <= s->parts; ++part)
         ax_free(f.stack[part]);
     void* blocks[] = {position, start, row, value, diagonal, f.update};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
-    return !f.failed;
+    return sound && s->failed[s->parts] < 0;
 }

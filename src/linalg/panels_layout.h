@@ -3,7 +3,7 @@
 
 #include "linalg/panels.h"
 
-enum { AX_PANEL_WIDTH = 4, AX_PANEL_PARTS = 8, AX_FRONT_STRIP = 16, AX_FRONT_ROUND = 8 };
+enum { AX_PANEL_WIDTH = 4, AX_PANEL_PARTS = AX_PANELS_TREES - 1, AX_FRONT_STRIP = 16, AX_FRONT_ROUND = 8 };
 
 // Up to four columns of a supernode: their triangle (column by column, diagonal as its reciprocal), then the rows below, row by
 // row. The panels of a supernode share its list of rows.
@@ -37,6 +37,7 @@ struct ax_panels {
     int part_panel[AX_PANEL_PARTS + 2];
     size_t stack_size[AX_PANEL_PARTS + 1], front_size[AX_PANEL_PARTS + 1]; // doubles that factorising a part needs
     size_t longest[AX_PANEL_PARTS + 1];                                    // rows of its largest front
+    int failed[AX_PANEL_PARTS + 1]; // per part: its first column whose pivot is not positive, -1: none
 };
 
 static inline int ax_panels_top(const ax_panels* s)
