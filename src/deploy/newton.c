@@ -16,7 +16,7 @@ static const double merit_penalty = 30, penalty_far = 1e4, penalty_near = 1e7, e
 enum { UZAWA = 12, CHORDS = 4, TRIES = 3, REJECTIONS = 30, SHIFTS = 40 };
 // Stiffness in tensions and reach in edges of pins, which go with shifts below `most_pinned`. A hinge that would go `astray` and is more
 // than a `lone` part of the step is pinned too: there the matrix is all but singular.
-static const double spring = 100, first_reach = 0.03, most_reach = 0.5, most_pinned = 1e-2, astray = 0.5, lone = 0.02;
+static const double spring = 100, first_reach = 0.03, most_reach = 0.5, most_pinned = 0.1, astray = 0.5, lone = 0.02;
 
 // What makes the matrix positive definite where pins do not.
 typedef struct damping {
@@ -295,8 +295,8 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, doub
             if (ax_norm3(d[u]) > ax_norm3(d[farthest]))
                 farthest = u;
         double longest = ax_norm3(d[farthest]), pinned = ax_pins_longest(&s->pins);
-        if (longest > astray && longest * longest > lone * dot(3 * n, d[0], d[0]) && *shift < most_pinned * stiffness &&
-            ax_pins_add(&s->pins, farthest)) {
+        bool alone = longest * longest > lone * dot(3 * n, d[0], d[0]) && *shift < most_pinned * stiffness;
+        if (longest > astray && alone && ax_pins_add(&s->pins, farthest)) {
             shorter = false;
             continue;
         }
@@ -345,6 +345,8 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, doub
                 break;
             if (local)
                 reach = 0.3 * pinned;
+            else if (alone && ax_pins_add(&s->pins, farthest))
+                reach = 0.3 * longest;
             else {
                 *shift = fmax(8 * *shift, 1e-3 * stiffness);
                 s->damping.hold = 1;
@@ -363,7 +365,7 @@ ax_newton_result ax_newton_run(ax_newton* s, double (*x)[3], double* force, doub
             }
         } else if (local && ratio < 0.2)
             reach = 0.3 * pinned;
-        else if (ratio < 0.2 || t < full / 2)
+        else if ((ratio < 0.2 || t < full / 2) && !(alone && ax_pins_add(&s->pins, farthest)))
             *shift = fmax(4 * *shift, s->damping.least);
         if (fast) // then the matrix is positive definite without them
             s->pins.count = 0;
