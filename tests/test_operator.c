@@ -1321,7 +1321,8 @@ static void place_at(const ax_form_view* v, const double (*state)[3], const doub
         out[j] = (cross[0] * right[0][j] + cross[1] * right[1][j] + cross[2] * right[2][j]) / det;
 }
 
-static double largest_distance(const ax_form_view* coarse, const ax_form_view* fine, bool loaded, double* rms)
+static double largest_distance(const ax_form_view* coarse, const ax_form_view* fine, bool loaded, double margin,
+                               double* rms)
 {
     const double(*x)[3] = loaded ? coarse->simulated : coarse->deployed;
     const double(*y)[3] = loaded ? fine->simulated : fine->deployed;
@@ -1333,7 +1334,7 @@ static double largest_distance(const ax_form_view* coarse, const ax_form_view* f
         for (int g = 0; g < linkage->hinge_count; ++g)
             if (linkage->on_rim[g])
                 from_rim = fmin(from_rim, ax_distance2(coarse->sheet[h], coarse->sheet[g]));
-        if (from_rim < 0.05)
+        if (from_rim < margin)
             continue;
         double a[3], b[3];
         place_at(coarse, x, coarse->sheet[h], a);
@@ -1376,7 +1377,15 @@ static void results_do_not_depend_on_resolution(void** state)
         "\"paint\", \"points\": [[0, 0]], \"radius\": 0.8, \"value\": 1.65}, {\"op\": \"rim_polyline\", \"points\": "
         "[[1.25, 0, 0], [0.625, 1.0825, 0], [-0.625, 1.0825, 0], [-1.25, 0, 0], [-0.625, -1.0825, 0], [0.625, "
         "-1.0825, 0]]}, {\"op\": \"inflation\"}",
+        // rims held in parts, which are told by places; under load panels of a free rim hang from two hinges and are left out
+        "{\"op\": \"start_polygon\", \"sides\": 6, \"radius\": 1, \"triangles\": %d, \"scale\": 1.3}, {\"op\": "
+        "\"rim_fixed\", \"hinges\": \"rim:corner1(0.1), rim:corner2(0.1), rim:corner3(0.1), rim:corner4(0.1), "
+        "rim:corner5(0.1), rim:corner6(0.1)\"}, {\"op\": \"gravity\"}",
+        "{\"op\": \"start_circle\", \"radius\": 1, \"triangles\": %d, \"scale\": 1.3}, {\"op\": \"rim_circle\", "
+        "\"radius\": 1.15, \"hinges\": \"rim:(1,0)>(0.5,0.866), rim:(-0.5,0.866)>(-1,0), "
+        "rim:(-0.5,-0.866)>(0.5,-0.866)\"}, {\"op\": \"gravity\"}",
     };
+    enum { IN_PARTS = 9 };
     size_t count = getenv("AX_QUICK") ? 0 : sizeof recipes / sizeof *recipes;
     for (size_t k = 0; k < count; ++k) {
         ax_form* forms[2];
@@ -1392,7 +1401,7 @@ static void results_do_not_depend_on_resolution(void** state)
                 lo[c] = fmin(lo[c], fine.deployed[h][c]), hi[c] = fmax(hi[c], fine.deployed[h][c]);
         double size = fmax(hi[0] - lo[0], hi[1] - lo[1]);
         for (int loaded = 0; loaded < 2; ++loaded)
-            most[loaded] = largest_distance(&coarse, &fine, loaded, rms + loaded);
+            most[loaded] = largest_distance(&coarse, &fine, loaded, loaded && k >= IN_PARTS ? 0.2 : 0.05, rms + loaded);
         print_message("recipe %zu: deployed %.4f rms, %.4f at most; under load %.4f, %.4f; of a size of %.2f\n", k,
                       rms[0], most[0], rms[1], most[1], size);
         assert_at_most(fmax(most[0], most[1]), 0.02 * size);
