@@ -1410,6 +1410,39 @@ static void results_do_not_depend_on_resolution(void** state)
     }
 }
 
+// What holds a fine sheet holds the coarser one that settles first, on its own hinges: else the fine one would start far off.
+static void what_holds_a_fine_sheet_is_kept_from_its_start(void** state)
+{
+    (void)state;
+    static const char* const holds[] = {
+        "{\"op\": \"hold_mirror\"}",
+        "{\"op\": \"hold_rotation\", \"order\": 3}",
+        "{\"op\": \"hold_fair\"}",
+        "{\"op\": \"hold_plane_given\", \"hinges\": \"box(-0.3,-0.3,0.3,0.3)\", \"point\": [0, 0, -0.4], "
+        "\"normal\": [0, 0, 1]}",
+        "{\"op\": \"hold_plane\", \"hinges\": \"box(-0.3,-0.3,0.3,0.3)\"}",
+        "{\"op\": \"rim_fixed\", \"hinges\": \"rim:0..20\", \"at\": \"sheet\"}",
+        "{\"op\": \"hold_curve\", \"hinges\": \"box(-0.8,-0.005,0.8,0.005)\", \"curve\": \"spline\", "
+        "\"points\": [[-1.1, 0, 0], [0, 0, -0.4], [1.1, 0, 0]]}",
+    };
+    for (size_t k = 0; k < sizeof holds / sizeof *holds; ++k) {
+        char text[800];
+        snprintf(text, sizeof text,
+                 "{\"op\": \"start_circle\", \"radius\": 1, \"triangles\": 1000, \"scale\": 1.25}, {\"op\": \"paint\", "
+                 "\"points\": [[0, 0]], \"radius\": 0.95, \"value\": 1.6}, {\"op\": \"rim_circle\", \"radius\": "
+                 "1.15}, %s, {\"op\": \"gravity\"}",
+                 holds[k]);
+        ax_form* form = play(text);
+        ax_form_report report;
+        ax_form_measure(form, &report);
+        if (!(report.deployed_error < 1e-3 && report.simulated_error < 1e-3 && report.held[0].residual < 1e-3))
+            fail_msg("%s: edges off by %.1e, %.1e, held off by %.1e", holds[k], report.deployed_error,
+                     report.simulated_error, report.held[0].residual);
+        ax_form_report_free(&report);
+        ax_form_free(form);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -1443,6 +1476,7 @@ int main(void)
         cmocka_unit_test(what_an_operator_misses_is_told),
         cmocka_unit_test(drawn_sheets_have_their_proportions),
         cmocka_unit_test(stretched_sheets_open_alike_in_all_directions),
+        cmocka_unit_test(what_holds_a_fine_sheet_is_kept_from_its_start),
         cmocka_unit_test(results_do_not_depend_on_resolution),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
