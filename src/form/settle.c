@@ -217,6 +217,31 @@ static bool load_sheet(ax_form* f, int iterations, const ax_progress* progress)
     return balanced || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, progress, 0.8, 1);
 }
 
+// Opens a sheet that is nearly flat, or takes the places of a coarser one that has opened: then so much of the time has gone by. False if
+// cancelled.
+static bool start_afresh(ax_form* f, int iterations, const ax_progress* progress, double* gone)
+{
+    ax_progress_part part;
+    bool nested = false;
+    if (iterations == 0 && !ax_form_nest(f, ax_progress_within(&part, progress, 0, coarse_share), &nested))
+        return false;
+    *gone = nested ? coarse_share : 0;
+    if (nested)
+        return true;
+    // panels that give way before the holes are open settle for a flatter shape, and leave it slowly
+    bool leans = ax_form_hangs(f) && ax_form_shares(f);
+    ax_form_allow_give(f, false);
+    if (leans)
+        lean(f, true);
+    ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : FRESH_ITERATIONS);
+    ax_form_allow_give(f, true);
+    if (leans) {
+        ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : LEAN_ITERATIONS);
+        lean(f, false);
+    }
+    return true;
+}
+
 ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress, ax_error* error)
 {
     int n = f->lattice.linkage.hinge_count;
@@ -232,7 +257,7 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     ax_form_twist(f);
     if (!ax_form_shares(f))
         ax_solver_reset_multipliers(f->shape);
-    bool fresh = false, nested = false, going = true;
+    bool fresh = false, going = true;
     double lo = INFINITY, hi = -INFINITY;
     for (int h = 0; h < n; ++h)
         lo = fmin(lo, f->deployed[h][2]), hi = fmax(hi, f->deployed[h][2]);
@@ -240,23 +265,11 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
                                         ax_form_left_over(f) || ax_form_stands_elsewhere(f));
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
         ax_form_restart(f, 0.05), fresh = true;
+    double from = 0;
+    if (fresh)
+        going = start_afresh(f, iterations, progress, &from);
     ax_progress_part part;
-    if (fresh && iterations == 0)
-        going = ax_form_nest(f, ax_progress_within(&part, progress, 0, coarse_share), &nested);
-    const ax_progress* own = nested ? ax_progress_within(&part, progress, coarse_share, 1) : progress;
-    if (fresh &&
-        !nested) { // panels that give way before the holes are open settle for a flatter shape, and leave it slowly
-        bool leans = ax_form_hangs(f) && ax_form_shares(f);
-        ax_form_allow_give(f, false);
-        if (leans)
-            lean(f, true);
-        ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : FRESH_ITERATIONS);
-        ax_form_allow_give(f, true);
-        if (leans) {
-            ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : LEAN_ITERATIONS);
-            lean(f, false);
-        }
-    }
+    const ax_progress* own = ax_progress_within(&part, progress, from, 1);
     double half = ax_form_hangs(f) ? 0.5 : 1;
     if (going && iterations == 0 && ax_form_shares(f))
         going = shape_sheet(f, own, half);
