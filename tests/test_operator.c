@@ -870,6 +870,34 @@ static void lines_run_straight_and_curves_lead_from_hinge_to_hinge(void** state)
     ax_form_free(form);
 }
 
+// Arches between two points are rows of single hinges, at the same place whatever the number of panels.
+static void curves_between_points_do_not_depend_on_resolution(void** state)
+{
+    (void)state;
+    for (int triangles = 300; triangles <= 1200; triangles *= 2) {
+        char text[100];
+        snprintf(text, sizeof text, "{\"op\": \"start_circle\", \"radius\": 1, \"triangles\": %d}", triangles);
+        ax_form* form = play(text);
+        ax_form_view v = ax_form_look(form);
+        const double from[2] = {-0.7, 0.2}, to[2] = {0.6, 0.3};
+        int *hinges, count;
+        assert_int_equal(ax_select(form, "curve((-0.7, 0.2), (0.6, 0.3))", &hinges, &count, NULL), AX_OK);
+        assert_at_most(ax_distance2(v.sheet[hinges[0]], from), 0.5 * v.spacing);
+        assert_at_most(ax_distance2(v.sheet[hinges[count - 1]], to), 0.5 * v.spacing);
+        for (int k = 0; k < count; ++k)
+            assert_at_most(ax_segment_distance2(v.sheet[hinges[k]], from, to), v.spacing);
+        for (int k = 0; k + 1 < count; ++k) // edges on the sheet
+            assert_near(ax_distance2(v.sheet[hinges[k]], v.sheet[hinges[k + 1]]), v.spacing / 2, 1e-9);
+        ax_free(hinges);
+        assert_int_equal(ax_select(form, "curve((-0.7, 0.2), 0)", &hinges, &count, NULL), AX_OK);
+        assert_int_equal(hinges[count - 1], 0);
+        ax_free(hinges);
+        ax_error error;
+        assert_int_equal(ax_select(form, "curve((-0.7), 0)", &hinges, &count, &error), AX_BAD_INPUT);
+        ax_form_free(form);
+    }
+}
+
 static void selections_that_cannot_be_read_are_refused(void** state)
 {
     (void)state;
@@ -1464,6 +1492,7 @@ int main(void)
         cmocka_unit_test(a_design_for_a_surface_is_watched_while_it_is_solved),
         cmocka_unit_test(selections_choose_what_they_say),
         cmocka_unit_test(lines_run_straight_and_curves_lead_from_hinge_to_hinge),
+        cmocka_unit_test(curves_between_points_do_not_depend_on_resolution),
         cmocka_unit_test(selections_that_cannot_be_read_are_refused),
         cmocka_unit_test(parts_of_the_rim_take_hinges_from_one_another),
         cmocka_unit_test(what_holds_may_change_between_two_solves),

@@ -99,15 +99,33 @@ static ax_status take_numbers(reader* r, int count, double* values)
     return take_up_to(r, count, count, values);
 }
 
+// A hinge by its number, or that of `count` (NULL: of all) which is nearest to a point of the sheet, (x, y).
+static ax_status take_spot(reader* r, int count, const int* among, int* hinge)
+{
+    skip_space(r);
+    if (*r->at != '(')
+        return take_hinge(r, hinge);
+    double at[2];
+    ax_status status = take_numbers(r, 2, at);
+    *hinge = -1;
+    for (int k = 0; k < count && status == AX_OK; ++k) {
+        int h = among ? among[k] : k;
+        if (*hinge < 0 || ax_distance2(r->view.sheet[h], at) < ax_distance2(r->view.sheet[*hinge], at))
+            *hinge = h;
+    }
+    return status;
+}
+
 static ax_status take_pair(reader* r, int* a, int* b)
 {
+    int all = r->view.linkage->hinge_count;
     if (!take(r, "("))
         return refuse(r, "two hinges in parentheses are wanted");
-    ax_status status = take_hinge(r, a);
+    ax_status status = take_spot(r, all, NULL, a);
     if (status == AX_OK && (skip_space(r), !take(r, ",")))
         status = refuse(r, "a comma and a second hinge are wanted");
     if (status == AX_OK)
-        status = take_hinge(r, b);
+        status = take_spot(r, all, NULL, b);
     if (status == AX_OK && (skip_space(r), !take(r, ")")))
         status = refuse(r, "a closing parenthesis is wanted");
     return status;
@@ -224,20 +242,11 @@ static ax_status take_angles(reader* r, double lo, ax_hinges* rim)
     return AX_OK;
 }
 
-// One end of a run of the rim: a hinge by its number, or that nearest to a point, (x, y); its place in the rim.
+// One end of a run of the rim; its place in the rim.
 static ax_status take_end(reader* r, const ax_hinges* rim, int* place)
 {
-    int hinge = -1;
-    ax_status status;
-    skip_space(r);
-    if (*r->at == '(') {
-        double at[2];
-        status = take_numbers(r, 2, at);
-        for (int k = 0; k < rim->count && status == AX_OK; ++k)
-            if (hinge < 0 || ax_distance2(r->view.sheet[rim->hinges[k]], at) < ax_distance2(r->view.sheet[hinge], at))
-                hinge = rim->hinges[k];
-    } else
-        status = take_hinge(r, &hinge);
+    int hinge;
+    ax_status status = take_spot(r, rim->count, rim->hinges, &hinge);
     if (status == AX_OK && !rim->in[hinge])
         status = ax_fail(r->error, AX_BAD_INPUT, "Hinge %d is not on the rim.", hinge);
     for (int k = 0; k < rim->count; ++k)

@@ -41,7 +41,9 @@ static ax_status apply(const ax_operator_context* context, const void* given, ax
 const ax_operator_type ax_operator_select_near = {
     .name = "select_near",
     .title = "Select near a curve",
-    .doc = "Gives a name to the hinges within a distance of a curve drawn on the sheet.",
+    .doc =
+        "Gives a name to the hinges within a distance of a curve drawn on the sheet, in as many rows as lie within it; "
+        "for one row whatever the number of panels, select curve((x,y),(x,y)).",
     .group = "selection",
     .fields = fields,
     .field_count = AX_COUNT(fields),
