@@ -231,8 +231,7 @@ class Recipes(CommandCase):
 
     def test_a_few_panels_that_did_not_settle_do_not_keep_a_form_from_being_exact(self):
         # a corner folds where the outline has one and the rim has none, and edges there are off when it rests
-        slack = [{"op": "start_polygon", "sides": 8, "radius": 1, "triangles": 600, "scale": 1.2},
-                 {"op": "formula", "formula": "1.35 + 0.12*cos(3*theta)*r"},
+        slack = [{"op": "start_polygon", "sides": 3, "radius": 1, "triangles": 300, "scale": 1.35},
                  {"op": "rim_circle", "radius": 1.25}, {"op": "gravity"}]
         out = self.folder / "x.auxshell"
         self.assertIn("Not settled", self.succeed("run", self.write(slack), "-o", out))
