@@ -101,6 +101,15 @@ static void every_kind_of_factor_solves(void** state)
     ax_cholesky_solve(factor, b, back, 3);
     for (int i = 0; i < 3 * N; ++i)
         assert_near(back[i], x[i], 1e-11);
+    ax_cholesky* ordered = ax_cholesky_analyse_ordered(&matrix, ax_cholesky_order(factor));
+    double* again = AX_NEW(double, 3 * (size_t)matrix.n);
+    assert_true(ax_cholesky_factor(ordered, &matrix));
+    ax_cholesky_solve(ordered, b, again, 3);
+    assert_true(ax_cholesky_count(ordered).entries == ax_cholesky_count(factor).entries);
+    for (int k = 0; k < 3 * matrix.n; ++k)
+        assert_near(again[k], back[k], 1e-12 * fmax(1, fabs(back[k])));
+    ax_cholesky_free(ordered);
+    ax_free(again);
     ax_cholesky_counters counters = ax_cholesky_count(factor);
     assert_true(counters.analyses == 1 && counters.factorisations == 1 && counters.solves == 1);
     ax_cholesky_free(factor);

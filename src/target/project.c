@@ -28,6 +28,9 @@ typedef struct obstacle {
     double (*direction)[3];
     double *h, *trial;
     unsigned char* on_rim;
+    int* order;          // of elimination, that of all vertices: good for any set of them
+    ax_cholesky* factor; // for those that `factored` tells
+    bool* factored;
     double curvature; // eps
     double diagonal;
     const ax_progress* progress;
@@ -136,11 +139,48 @@ static void linearise(const obstacle* o, ax_sparse* matrix, double* base)
     ax_free(area);
 }
 
+// Solves matrix trial = -base for the moved vertices, leaving the others where they are. Sets of moved vertices differ by few from one
+// round to the next: they are eliminated in one order, and one that stays is not analysed again.
+static bool solve_moved(obstacle* o, const ax_sparse* matrix, const double* base, const bool* moved, int* index)
+{
+    int n = matrix->n, count = 0;
+    double* part = AX_NEW(double, n);
+    for (int v = 0; v < n; ++v) {
+        index[v] = moved[v] ? count : -1;
+        if (moved[v])
+            part[count++] = -base[v];
+    }
+    memset(o->trial, 0, (size_t)n * sizeof *o->trial);
+    bool sound = true;
+    if (count) {
+        ax_sparse active = ax_sparse_principal(matrix, index);
+        if (!o->factor || memcmp(o->factored, moved, (size_t)n * sizeof *moved) != 0) {
+            int* order = AX_NEW(int, n);
+            for (int k = 0, at = 0; k < n; ++k)
+                if (moved[o->order[k]])
+                    order[at++] = index[o->order[k]];
+            ax_cholesky_free(o->factor);
+            o->factor = ax_cholesky_analyse_ordered(&active, order);
+            memcpy(o->factored, moved, (size_t)n * sizeof *moved);
+            ax_free(order);
+        }
+        sound = ax_cholesky_factor(o->factor, &active);
+        if (sound)
+            ax_cholesky_solve(o->factor, part, part, 1);
+        ax_sparse_free(&active);
+        for (int v = 0; v < n && sound; ++v)
+            if (moved[v])
+                o->trial[v] = part[index[v]];
+    }
+    ax_free(part);
+    return sound;
+}
+
 // Solves that problem into o->trial, starting from the set of moved vertices that o->h and the residual suggest.
 static bool solve_complementarity(obstacle* o, const ax_sparse* matrix, const double* base)
 {
     int n = o->mesh.vertex_count, *index = AX_NEW(int, n);
-    double *residual = AX_NEW(double, n), *part = AX_NEW(double, n);
+    double* residual = AX_NEW(double, n);
     ax_sparse_multiply(matrix, o->h, residual, 1);
     double scale = 0;
     for (int v = 0; v < n; ++v)
@@ -151,26 +191,7 @@ static bool solve_complementarity(obstacle* o, const ax_sparse* matrix, const do
 
     bool sound = true, changed = true;
     for (int round = 0; round < MOST_ACTIVE_SETS && sound && changed; ++round) {
-        sound = go_on(o);
-        int count = 0;
-        for (int v = 0; v < n; ++v) {
-            index[v] = moved[v] ? count : -1;
-            if (moved[v])
-                part[count++] = -base[v];
-        }
-        memset(o->trial, 0, (size_t)n * sizeof *o->trial);
-        if (count && sound) {
-            ax_sparse active = ax_sparse_principal(matrix, index);
-            ax_cholesky* factor = ax_cholesky_analyse(&active);
-            sound = ax_cholesky_factor(factor, &active);
-            if (sound)
-                ax_cholesky_solve(factor, part, part, 1);
-            ax_cholesky_free(factor);
-            ax_sparse_free(&active);
-            for (int v = 0; v < n && sound; ++v)
-                if (moved[v])
-                    o->trial[v] = part[index[v]];
-        }
+        sound = go_on(o) && solve_moved(o, matrix, base, moved, index);
         ax_sparse_multiply(matrix, o->trial, residual, 1);
         changed = false;
         for (int v = 0; v < n; ++v) {
@@ -183,7 +204,6 @@ static bool solve_complementarity(obstacle* o, const ax_sparse* matrix, const do
         o->trial[v] = o->trial[v] < 0 ? 0 : o->trial[v]; // keeps NaN, which step() looks for
     ax_free(index);
     ax_free(residual);
-    ax_free(part);
     ax_free(moved);
     return sound;
 }
@@ -232,7 +252,13 @@ static obstacle obstacle_make(const ax_mesh* start, double area, const ax_progre
                   .trial = AX_NEW(double, n),
                   .curvature = LEAST_CURVATURE / sqrt(area),
                   .diagonal = ax_diagonal(start),
-                  .progress = progress};
+                  .progress = progress,
+                  .factored = AX_NEW0(bool, n)};
+    ax_sparse matrix = ax_cotan_laplacian(start);
+    ax_cholesky* whole = ax_cholesky_analyse(&matrix);
+    o.order = ax_copy(ax_cholesky_order(whole), (size_t)n, sizeof *o.order);
+    ax_cholesky_free(whole);
+    ax_sparse_free(&matrix);
     ax_topology topology = ax_topology_make(start);
     o.on_rim = ax_copy(topology.on_rim, (size_t)n, 1);
     ax_topology_free(&topology);
@@ -246,6 +272,9 @@ static void obstacle_free(obstacle* o)
     ax_free(o->h);
     ax_free(o->trial);
     ax_free(o->on_rim);
+    ax_free(o->order);
+    ax_free(o->factored);
+    ax_cholesky_free(o->factor);
 }
 
 // Smallest H off the rim.
