@@ -199,6 +199,8 @@ class Recipes(CommandCase):
             (3, "Operator 2, formula: ", [SMALL[0], {"op": "formula", "formula": "1 +"}]),
             (3, "none.csv", [SMALL[0], {"op": "table", "file": "none.csv"}]),
             (3, "gives values from 2.1", [SMALL[0], {"op": "formula", "formula": "3.1 + 0*x - 1"}]),
+            (3, "crosses itself after its point 0,",
+             [{"op": "start_outline", "points": [[0, 0], [4, 0], [4, 2], [1, -1], [0, 2]], "triangles": 300}]),
             (3, "no area", [{"op": "start_outline", "points": [[0, 0], [2, 2], [2, 0], [0, 2]]}]),
             (3, "12 to 2000000", [{"op": "start_circle", "radius": 1, "edge": 1}]),
         ):

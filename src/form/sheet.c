@@ -205,6 +205,23 @@ static void fit_outline(const fit* f, ax_lattice* lattice)
     lattice->spacing *= scale;
 }
 
+// The first side of a closed outline that runs across another one, -1 if none does; ends that touch are no crossing.
+static int find_crossing(int n, const double (*x)[2])
+{
+    for (int i = 0; i < n; ++i) {
+        const double *a = x[i], *b = x[(i + 1) % n];
+        double lo = fmin(a[0], b[0]), hi = fmax(a[0], b[0]);
+        for (int j = i + 2; j < n; ++j) {
+            const double *c = x[j], *d = x[(j + 1) % n];
+            if (fmin(c[0], d[0]) > hi || fmax(c[0], d[0]) < lo)
+                continue;
+            if (ax_orient2(a, b, c) * ax_orient2(a, b, d) < 0 && ax_orient2(c, d, a) * ax_orient2(c, d, b) < 0)
+                return i;
+        }
+    }
+    return -1;
+}
+
 ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error* error)
 {
     *lattice = (ax_lattice){0};
@@ -222,6 +239,13 @@ ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error*
     }
     if (!(fabs(area) > 1e-12 * (hi[0] - lo[0]) * (hi[1] - lo[1])))
         return ax_fail(error, AX_USAGE, "The outline encloses no area.");
+    int crossing = find_crossing(n, start->outline);
+    if (crossing >= 0)
+        return ax_fail(
+            error, AX_USAGE,
+            "The outline crosses itself after its point %d, at (%.4g, %.4g). Give the corners in their order "
+            "round the sheet.",
+            crossing, start->outline[crossing][0], start->outline[crossing][1]);
     if (!(start->scale >= 1 && start->scale <= 2))
         return ax_fail(error, AX_USAGE, "The scale factor %g is outside 1 to 2.", start->scale);
     double spacing = start->edge > 0 ? 2 * start->edge : sqrt(4 * fabs(area) / (sqrt(3) * fmax(start->triangles, 1)));
