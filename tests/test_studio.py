@@ -255,6 +255,18 @@ class Protocol(StudioCase):
         for a, b in flat_ones:
             self.assertFalse(apart(a, b) or apart(b, a))
 
+    def test_slack_sheets_are_told_as_such_and_their_folds_in_the_plan(self):
+        page = self.page(self.start(steps=[{"op": "start_circle", "radius": 1, "triangles": 24, "scale": 1.9},
+                                           {"op": "rim_circle", "radius": 0.3}, {"op": "inflation"}]))
+        page.rest()
+        check = next(check for check in page.events["report"]["checks"] if check["key"] == "match")
+        self.assertEqual(check["severity"], "warning")
+        self.assertRegex(check["answer"], r"^slack, \d+ % open$")
+        plan = self.agree(page.ask("export", ending=".svg"))["plan"]
+        self.assertGreater(plan["folds"], 0)
+        self.assertEqual(len(set(plan["fold"])), 2)
+        self.assertIsInstance(plan["doubt"], str)
+
     def test_variants_are_kept_compared_and_taken(self):
         page = self.page(self.start())
         self.agree(page.ask("variant", name="low"))

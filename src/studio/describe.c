@@ -353,7 +353,13 @@ static check match_check(const ax_form_report* r, const ax_form_view* v)
         if (off > most)
             most = off, c.hinge = h;
     }
-    c.severity = !known ? UNKNOWN : found(r, "slack", "tight", &c);
+    const ax_finding* f = worst_finding(r, "tight", "slack");
+    c.severity = !known && !f ? UNKNOWN : taken(f, &c);
+    if (f) {
+        bool slack = strcmp(f->kind, "slack") == 0;
+        snprintf(c.answer, sizeof c.answer, slack ? "slack, %.0f %% open" : "taut", 100 * f->value);
+        snprintf(c.limit, sizeof c.limit, slack ? "%.0f %% of every hole" : "too little material", 100 * f->limit);
+    }
     if (known && r->simulated_rms > 0.1 && c.severity < WARNING)
         c.severity = WARNING;
     return c;
@@ -659,8 +665,10 @@ json_t* describe_plan(const ax_cut_plan* p)
                                         c->hinge, "when", when[c->frame + 1], "opening", describe_number(c->opening),
                                         "overlap", describe_number(c->overlap)));
     }
-    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:i, s:o, s:i, s:o}", "sheets", p->sheet_count, "cut_length",
-                     describe_number(1e-3 * cut), "seconds", describe_number(p->seconds), "mass",
+    json_t* fold = p->folds ? json_pack("[i, i]", p->fold[0], p->fold[1]) : json_null();
+    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:i, s:o, s:i, s:o, s:i, s:o, s:s}", "sheets", p->sheet_count,
+                     "cut_length", describe_number(1e-3 * cut), "seconds", describe_number(p->seconds), "mass",
                      describe_number(p->mass), "utilisation", describe_number(p->utilisation), "clashes",
-                     p->clashes_found, "collisions", collisions, "seams", p->seam_count, "parts", parts);
+                     p->clashes_found, "collisions", collisions, "seams", p->seam_count, "parts", parts, "folds",
+                     p->folds, "fold", fold, "doubt", p->doubt);
 }

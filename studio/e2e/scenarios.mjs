@@ -617,6 +617,7 @@ export const scenarios = {
                 await page.getByRole("button", { name: "Can it deploy?" }).click();
                 const findings = page.getByRole("region", { name: "Findings" });
                 for (const [k, f] of report.findings.filter((x) => x.triangle >= 0 || x.hinge >= 0).entries()) await leadsTo(findings.getByRole("button").nth(k), f.kind);
+                if (name === "panels folded together") assert.match(await page.locator('.checks [data-check="match"]').innerText(), /^Material\s+(Slack, \d+ % open|Taut)/);
                 if (name === "a site that is near") assert.ok(report.findings.some((f) => f.kind === "clearance"));
             }, { reducedMotion: "reduce" }, { "ground.obj": site });
     },

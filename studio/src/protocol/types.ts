@@ -69,6 +69,11 @@ export interface Plan {
     collisions: { panels: [number, number]; hinge: number; when: "flat" | "deployed" | "simulated" | "between" | "turning"; opening: number | null; overlap: number | null }[];
     seams: number;
     parts: { name: string; count: number }[];
+    /** Neighbours folded onto each other when open, and the panels of the first. */
+    folds: number;
+    fold: [number, number] | null;
+    /** What speaks against the joint here; empty: nothing. */
+    doubt: string;
 }
 
 export interface Hello {

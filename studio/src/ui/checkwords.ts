@@ -21,7 +21,7 @@ export function checkWords(c: Check, unit: LengthUnit, edge: number): CheckWords
         case "overlap": return words("Collisions", v === 0 ? "None" : null);
         case "curvature": return words("Bulges outward", v === 0 ? "Everywhere" : v === null ? null : `Not on ${number(100 * v, v < 0.1 ? 1 : 0)} %`);
         case "rim": return words("Rim and constraints", v === null ? null : v < 1e-9 ? "Exactly met" : `${length(v, unit)} off`);
-        case "match": return words("Simulated to design", v === null ? null : `${length(v * edge, unit)} rms`);
+        case "match": return /^(slack|taut)/.test(c.answer) ? words("Material", capital(c.answer)) : words("Simulated to design", v === null ? null : `${length(v * edge, unit)} rms`);
         case "force": return c.answer.startsWith("exact") && v !== null ? { question: "Forces in balance", answer: "Exact", limit: `Residual ${scientific(v)}` } : words("Forces in balance", c.severity === "unknown" ? "Not exact yet" : capital(c.answer.replace(/^edges off by/, "off by")));
         default: return words(c.title, null);
     }

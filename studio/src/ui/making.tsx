@@ -59,6 +59,12 @@ export function CutSettings({ value, onChange }: { value: CutOptions; onChange(v
     );
 }
 
+/** Two panels by name; leads to them. */
+function PanelsLink({ panels, hinge }: { panels: [number, number]; hinge: number }) {
+    const lead = () => ((dialog.value = null), show({ triangle: panels[0], other: panels[1], hinge }));
+    return <button type="button" class="link" title="Show them" onClick={lead}>{panels.map((t) => currentShell()?.name(t) ?? t).join(", ")}</button>;
+}
+
 /** What the cut files come to. */
 export function PlanFigures({ plan }: { plan: Plan }) {
     const time = plan.seconds < 5400 ? `${number(plan.seconds / 60, 0)} min` : `${number(plan.seconds / 3600, 1)} h`;
@@ -70,6 +76,12 @@ export function PlanFigures({ plan }: { plan: Plan }) {
     return (
         <>
             <table class="figures"><tbody>{rows.map(([name, figure]) => <tr key={name}><th scope="row">{name}</th><td>{figure}</td></tr>)}</tbody></table>
+            {plan.doubt && <p class="note warning" role="status">{plan.doubt}</p>}
+            {plan.fold && (
+                <p class="note bad" role="alert">
+                    <span>{plural(plan.folds, "pair")} of neighbours lie folded onto each other when open, <PanelsLink panels={plan.fold} hinge={-1} /> first: no joint bends so far. Paint smaller scale factors there, or tighten to load.</span>
+                </p>
+            )}
             {plan.clashes > 0 && (
                 <>
                     <p class="note bad" role="alert">{plural(plan.clashes, "pair")} of panels meet on the way from flat to open. Take a smaller joint, or more distance.</p>
@@ -78,7 +90,7 @@ export function PlanFigures({ plan }: { plan: Plan }) {
                         <tbody>
                             {plan.collisions.slice(0, 12).map((c) => (
                                 <tr key={`${c.panels} ${c.when}`}>
-                                    <th scope="row"><button type="button" class="link" title="Show them" onClick={() => ((dialog.value = null), show({ triangle: c.panels[0], other: c.panels[1], hinge: c.hinge }))}>{c.panels.map((t) => currentShell()?.name(t) ?? t).join(", ")}</button></th>
+                                    <th scope="row"><PanelsLink panels={c.panels} hinge={c.hinge} /></th>
                                     <td>{whenWords[c.when]}{c.when === "between" && c.opening !== null ? `, ${number(100 * c.opening, 0)} % open` : ""}</td>
                                     <td>{c.overlap === null ? "" : `${number(c.overlap, 1)} mm`}</td>
                                 </tr>
