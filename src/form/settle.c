@@ -22,7 +22,7 @@ enum {
     STALLED = 450 // iterations without better edges: they cannot be right
 };
 static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 2e-3, good_error = 5e-3, balance_error = 0.03;
-static const double block_step = 2e-4;  // in lattice spacings
+static const double block_step = 1e-4;  // in lattice spacings
 static const double coarse_share = 0.3; // of the time, where a coarser sheet settles first
 static const double astray = 4;         // steps so many times longer after a jump than before it: it is taken back
 static const char shaping[] = "Shaping the sheet", loading[] = "Loading the sheet";
