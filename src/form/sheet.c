@@ -7,10 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-static const double least_lean = 1e-9, least_shift = 1e-9, good_lean = 0.007,
-                    most_lean = 0.02; // of panels from equilateral
-static const double excess_weight = 10, corner_weight = 0.12, count_weight = 0.2, search_range = 0.08;
-enum { COUNT_ROUNDS = 6, SEARCH_STEPS = 40 };
+static const double least_lean = 1e-9, most_lean = 0.02, good_lean = 0.007; // of panels from equilateral
+static const double good_waves = 0.008;                                     // of the rim about its outline
+static const double least_shift = 1e-9;                                     // in spacings
+static const double excess_weight = 10, wave_weight = 3, corner_weight = 0.12, count_weight = 0.2, search_range = 0.08;
+enum { COUNT_ROUNDS = 6, SEARCH_STEPS = 40, WAVES = 9 };
 
 // Area, and second moments of it about its middle over the square of the area: of what proportions it is, whatever its size.
 typedef struct moments {
@@ -136,13 +137,86 @@ static stretching match(const moments* sheet, const moments* asked)
     return s;
 }
 
-static double lean_of(const fit* f, const ax_lattice* lattice)
+// The affine map of the sheet to its outline.
+typedef struct affine {
+    double from[2], to[2], xx, xy, yy, lean;
+} affine;
+
+static affine map_to_outline(const fit* f, const ax_lattice* lattice, double* scale)
 {
-    moments m = sheet_moments(f, lattice);
-    return match(&m, &f->asked).lean;
+    const moments m = sheet_moments(f, lattice), *asked = &f->asked;
+    stretching s = match(&m, asked);
+    affine a = {.lean = s.lean};
+    memcpy(a.from, m.middle, sizeof a.from);
+    memcpy(a.to, asked->middle, sizeof a.to);
+    if (s.lean < least_lean) // as symmetric as its outline
+        s.xx = s.yy = 1, s.xy = 0;
+    if (ax_distance2(a.from, a.to) < least_shift * lattice->spacing) {
+        memcpy(a.from, f->middle, sizeof a.from);
+        memcpy(a.to, f->middle, sizeof a.to);
+    }
+    if (s.lean > most_lean) {
+        double half = 1 / sqrt(1 - most_lean * most_lean), share = most_lean * half / (s.lean * s.half);
+        s.xx = half + share * (s.xx - s.half), s.xy *= share, s.yy = half + share * (s.yy - s.half);
+    }
+    *scale = sqrt(asked->area / m.area);
+    a.xx = *scale * s.xx, a.xy = *scale * s.xy, a.yy = *scale * s.yy;
+    return a;
 }
 
-// Proportions first; then corners, which a last row of panels that is too short cuts off: sides of the rim are known by them; then the
+static void map_point(const affine* a, double x[2])
+{
+    double d[2] = {x[0] - a->from[0], x[1] - a->from[1]};
+    x[0] = a->to[0] + a->xx * d[0] + a->xy * d[1];
+    x[1] = a->to[1] + a->xy * d[0] + a->yy * d[1];
+}
+
+// How far a point is within the outline; negative: without.
+static double depth_within(const ax_outline* outline, const double x[2])
+{
+    double least = INFINITY, side = 1;
+    for (int k = 0; k < outline->count; ++k) {
+        const double *p = outline->points[k], *q = outline->points[(k + 1) % outline->count];
+        double along[2] = {q[0] - p[0], q[1] - p[1]}, to[2] = {x[0] - p[0], x[1] - p[1]};
+        double square = along[0] * along[0] + along[1] * along[1];
+        double t = square > 0 ? ax_clamp((along[0] * to[0] + along[1] * to[1]) / square, 0, 1) : 0;
+        double off[2] = {to[0] - t * along[0], to[1] - t * along[1]}, d = hypot(off[0], off[1]);
+        if (d < least)
+            least = d, side = ax_cross2(along, to) < 0 ? -1 : 1;
+    }
+    return side * least;
+}
+
+// Border panels even out steps from one to the next; what they cannot is where the rim as a whole runs within its outline here and without
+// there: the long waves of its distance, over the root of the area.
+static double waves_of(const fit* f, const ax_lattice* lattice, const affine* map)
+{
+    const ax_linkage* linkage = &lattice->linkage;
+    int *rim = AX_NEW(int, linkage->hinge_count), count = ax_linkage_rim(linkage, rim);
+    double(*x)[2] = ax_alloc((size_t)count, sizeof *x), length = 0, s = 0, wave[WAVES][2] = {{0}}, sum = 0;
+    for (int k = 0; k < count; ++k) {
+        memcpy(x[k], lattice->hinges[rim[k]], sizeof *x);
+        map_point(map, x[k]);
+    }
+    for (int k = 0; k < count; ++k)
+        length += ax_distance2(x[k], x[(k + 1) % count]);
+    for (int k = 0; k < count; ++k) {
+        double before = ax_distance2(x[k], x[(k + count - 1) % count]), after = ax_distance2(x[k], x[(k + 1) % count]);
+        double share = (before + after) / 2 / length * depth_within(&f->outline, x[k]);
+        for (int w = 0; w < WAVES; ++w) {
+            wave[w][0] += share * cos(2 * AX_PI * w * s / length);
+            wave[w][1] += share * sin(2 * AX_PI * w * s / length);
+        }
+        s += after;
+    }
+    for (int w = 0; w < WAVES; ++w)
+        sum += (w ? 4 : 1) * (wave[w][0] * wave[w][0] + wave[w][1] * wave[w][1]);
+    ax_free(x);
+    ax_free(rim);
+    return sqrt(sum / f->asked.area);
+}
+
+// Proportions first, and that the rim keeps to its outline; then corners, which a last row of panels that is too short cuts off: sides of the rim are known by them; then the
 // number of panels.
 static double badness(const fit* f, const ax_lattice* lattice)
 {
@@ -154,15 +228,19 @@ static double badness(const fit* f, const ax_lattice* lattice)
                 nearest = fmin(nearest, ax_distance2(lattice->hinges[h], f->corners[k]));
         missed = fmax(missed, nearest / lattice->spacing);
     }
-    double share = lattice->linkage.triangle_count / (double)f->start->triangles, lean = lean_of(f, lattice);
-    return lean + excess_weight * fmax(0, lean - most_lean) + corner_weight * missed + count_weight * fabs(share - 1);
+    double share = lattice->linkage.triangle_count / (double)f->start->triangles, scale;
+    affine map = map_to_outline(f, lattice, &scale);
+    return map.lean + excess_weight * fmax(0, map.lean - most_lean) + wave_weight * waves_of(f, lattice, &map) +
+           corner_weight * missed + count_weight * fabs(share - 1);
 }
 
 // Rows of panels are whole: 600 of them over 3 m by 1 m came out as 3.20 m by 0.94 m. Other numbers of panels near the one wanted have
 // rows that end on the outline, or nearly so; the lattice stays where it is, for the sake of symmetry.
 static void search_fit(const fit* f, ax_lattice* lattice)
 {
-    if (lean_of(f, lattice) < good_lean)
+    double scale;
+    affine map = map_to_outline(f, lattice, &scale);
+    if (map.lean < good_lean && waves_of(f, lattice, &map) < good_waves)
         return;
     double best = badness(f, lattice), spacing = sqrt(4 * f->asked.area / (sqrt(3) * f->start->triangles));
     for (int k = -SEARCH_STEPS; k <= SEARCH_STEPS; ++k) {
@@ -186,22 +264,11 @@ static void search_fit(const fit* f, ax_lattice* lattice)
 // turn as equilateral ones do.
 static void fit_outline(const fit* f, ax_lattice* lattice)
 {
-    const moments m = sheet_moments(f, lattice), *asked = &f->asked;
-    stretching s = match(&m, asked);
-    const double *from = m.middle, *to = asked->middle, scale = sqrt(asked->area / m.area);
-    if (s.lean < least_lean) // as symmetric as its outline
-        s.xx = s.yy = 1, s.xy = 0;
-    if (ax_distance2(from, to) < least_shift * lattice->spacing)
-        from = to = f->middle;
-    if (s.lean > most_lean) {
-        double half = 1 / sqrt(1 - most_lean * most_lean), share = most_lean * half / (s.lean * s.half);
-        s.xx = half + share * (s.xx - s.half), s.xy *= share, s.yy = half + share * (s.yy - s.half);
-    }
-    for (int h = -1; h < lattice->linkage.hinge_count; ++h) {
-        double *x = h < 0 ? lattice->offset : lattice->hinges[h], d[2] = {x[0] - from[0], x[1] - from[1]};
-        x[0] = to[0] + scale * (s.xx * d[0] + s.xy * d[1]);
-        x[1] = to[1] + scale * (s.xy * d[0] + s.yy * d[1]);
-    }
+    double scale;
+    affine map = map_to_outline(f, lattice, &scale);
+    map_point(&map, lattice->offset);
+    for (int h = 0; h < lattice->linkage.hinge_count; ++h)
+        map_point(&map, lattice->hinges[h]);
     lattice->spacing *= scale;
 }
 
