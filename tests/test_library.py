@@ -40,8 +40,8 @@ class Library(CommandCase):
         for path in (made, SURFACES / "kidney_dome.obj"):
             places = [[float(x) for x in line.split()[1:4]] for line in path.read_text().splitlines() if line.startswith("v ")]
             extents.append([max(axis) - min(axis) for axis in zip(*places)])
-        for shape, surface in zip(*extents):  # the surface comes back
-            self.assertAlmostEqual(shape / surface, 1, delta=0.01)
+        for shape, surface in zip(*extents):  # the surface comes back: its height is what 600 panels tell least surely
+            self.assertAlmostEqual(shape, surface, delta=0.005 * max(extents[1]))
 
     def test_a_program_is_built_by_pkg_config_and_by_cmake(self):
         prefix, environment = self.install()
