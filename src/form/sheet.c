@@ -61,6 +61,7 @@ static double (*list_corners(const ax_outline* outline, int* count))[2]
 typedef struct fit {
     const ax_form_start* start;
     ax_outline outline;
+    ax_polyline* border; // the same, to find places on
     moments asked;
     double middle[2]; // of its extents
     int corner_count;
@@ -172,19 +173,11 @@ static void map_point(const affine* a, double x[2])
 }
 
 // How far a point is within the outline; negative: without.
-static double depth_within(const ax_outline* outline, const double x[2])
+static double depth_within(const ax_polyline* border, const double x[2])
 {
-    double least = INFINITY, side = 1;
-    for (int k = 0; k < outline->count; ++k) {
-        const double *p = outline->points[k], *q = outline->points[(k + 1) % outline->count];
-        double along[2] = {q[0] - p[0], q[1] - p[1]}, to[2] = {x[0] - p[0], x[1] - p[1]};
-        double square = along[0] * along[0] + along[1] * along[1];
-        double t = square > 0 ? ax_clamp((along[0] * to[0] + along[1] * to[1]) / square, 0, 1) : 0;
-        double off[2] = {to[0] - t * along[0], to[1] - t * along[1]}, d = hypot(off[0], off[1]);
-        if (d < least)
-            least = d, side = ax_cross2(along, to) < 0 ? -1 : 1;
-    }
-    return side * least;
+    ax_polyline_point on = ax_polyline_find(border, (const double[3]){x[0], x[1], 0});
+    double to[2] = {x[0] - on.point[0], x[1] - on.point[1]};
+    return ax_cross2(on.tangent, to) < 0 ? -on.distance : on.distance;
 }
 
 // Border panels even out steps from one to the next; what they cannot is where the rim as a whole runs within its outline here and without
@@ -202,7 +195,7 @@ static double waves_of(const fit* f, const ax_lattice* lattice, const affine* ma
         length += ax_distance2(x[k], x[(k + 1) % count]);
     for (int k = 0; k < count; ++k) {
         double before = ax_distance2(x[k], x[(k + count - 1) % count]), after = ax_distance2(x[k], x[(k + 1) % count]);
-        double share = (before + after) / 2 / length * depth_within(&f->outline, x[k]);
+        double share = (before + after) / 2 / length * depth_within(f->border, x[k]);
         for (int w = 0; w < WAVES; ++w) {
             wave[w][0] += share * cos(2 * AX_PI * w * s / length);
             wave[w][1] += share * sin(2 * AX_PI * w * s / length);
@@ -341,11 +334,17 @@ ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error*
         fit f = {
             .start = start, .outline = outline, .asked = outline_moments(&outline), .middle = {middle[0], middle[1]}};
         f.corners = list_corners(&outline, &f.corner_count);
+        double(*border)[3] = ax_calloc((size_t)n, sizeof *border);
+        for (int k = 0; k < n; ++k)
+            memcpy(border[k], points[k], sizeof *points);
+        f.border = ax_polyline_make(n, (const double(*)[3])border);
+        ax_free(border);
         if (fits)
             search_fit(&f, lattice);
         ax_lattice_renumber(lattice); // names of panels without minus signs
         if (fits)
             fit_outline(&f, lattice);
+        ax_polyline_free(f.border);
         ax_free(f.corners);
     }
     ax_free(points);
