@@ -3,6 +3,7 @@
 
 #include "ax/form.h"
 
+#include "ax/linkage.h"
 #include "base/vec.h"
 #include "support/sample.h"
 
@@ -11,12 +12,12 @@
 
 enum { SIDES = 96 };
 
-static ax_form* disk(int triangles, double scale)
+static ax_form* polygon(int sides, int triangles, double scale)
 {
     double outline[SIDES][2];
-    for (int k = 0; k < SIDES; ++k)
-        outline[k][0] = cos(2 * AX_PI * k / SIDES), outline[k][1] = sin(2 * AX_PI * k / SIDES);
-    ax_form_start start = {.outline_count = SIDES,
+    for (int k = 0; k < sides; ++k)
+        outline[k][0] = cos(2 * AX_PI * k / sides), outline[k][1] = sin(2 * AX_PI * k / sides);
+    ax_form_start start = {.outline_count = sides,
                            .outline = (const double(*)[2])outline,
                            .triangles = triangles,
                            .scale = scale,
@@ -25,6 +26,11 @@ static ax_form* disk(int triangles, double scale)
     ax_error error;
     assert_int_equal(ax_form_make(&start, &form, &error), AX_OK);
     return form;
+}
+
+static ax_form* disk(int triangles, double scale)
+{
+    return polygon(SIDES, triangles, scale);
 }
 
 // Prescribes scale(r) of the distance from the middle.
@@ -115,6 +121,69 @@ static void uniform_sheets_open_flat_and_stop_at_lambda(void** state)
         ax_form_report_free(&start);
         ax_form_free(form);
     }
+}
+
+// Amplitude of the waves, up to eight round a regular polygon of radius 1, of the rim's distance from it.
+static double waves_about_polygon(ax_form* form, int sides)
+{
+    enum { WAVES = 9 };
+    ax_form_view view = ax_form_look(form);
+    int *rim = AX_NEW(int, view.linkage->hinge_count), count = ax_linkage_rim(view.linkage, rim);
+    double wave[WAVES][2] = {{0}}, sum = 0;
+    for (int k = 0; k < count; ++k) {
+        const double *at = view.sheet[rim[k]], *before = view.sheet[rim[(k + count - 1) % count]],
+                     *after = view.sheet[rim[(k + 1) % count]];
+        double angle = atan2(at[1], at[0]), step = 2 * AX_PI / sides;
+        double share = remainder(atan2(after[1], after[0]) - atan2(before[1], before[0]), 2 * AX_PI) / (4 * AX_PI);
+        double within = angle - step * floor(angle / step) - step / 2; // of a side, from its middle
+        double depth = cos(step / 2) / cos(within) - hypot(at[0], at[1]);
+        for (int w = 0; w < WAVES; ++w) {
+            wave[w][0] += (w ? 2 : 1) * share * depth * cos(w * angle);
+            wave[w][1] += (w ? 2 : 1) * share * depth * sin(w * angle);
+        }
+    }
+    for (int w = 0; w < WAVES; ++w)
+        sum += wave[w][0] * wave[w][0] + wave[w][1] * wave[w][1];
+    ax_free(rim);
+    return sqrt(sum);
+}
+
+// Least and most mean edge of the panels of the sheet, over half its spacing.
+static void sizes_of_panels(ax_form* form, double* least, double* most)
+{
+    ax_form_view view = ax_form_look(form);
+    *least = INFINITY, *most = 0;
+    for (int t = 0; t < view.linkage->triangle_count; ++t) {
+        const int* h = view.linkage->triangles[t];
+        double around = 0;
+        for (int k = 0; k < 3; ++k)
+            around += ax_distance2(view.sheet[h[k]], view.sheet[h[(k + 1) % 3]]);
+        *least = fmin(*least, around / (1.5 * view.spacing)), *most = fmax(*most, around / (1.5 * view.spacing));
+    }
+}
+
+static void sheets_keep_to_corners_and_round_ones_have_panels_of_one_size(void** state)
+{
+    (void)state;
+    static const double left[9] = {
+        [5] = 0.0135, [6] = 1e-3, [7] = 0.005, [8] = 0.015}; // 0.016, 0, 0.009, 0.017 by whole panels
+    for (int sides = 5; sides <= 8; ++sides)
+        for (int triangles = 600; triangles <= 2400; triangles *= 4) {
+            ax_form* form = polygon(sides, triangles, 1.3);
+            double least, most;
+            sizes_of_panels(form, &least, &most);
+            assert_at_most(most, 1.055); // 5 % by the border, a little by the proportions
+            assert_at_most(0.945, least);
+            if (sides == 6)
+                assert_near(most / least, 1, 1e-9);
+            assert_at_most(waves_about_polygon(form, sides), triangles == 600 ? left[sides] : 0.0035);
+            ax_form_free(form);
+        }
+    ax_form* form = disk(600, 1.3);
+    double least, most;
+    sizes_of_panels(form, &least, &most);
+    assert_near(most / least, 1, 1e-9);
+    ax_form_free(form);
 }
 
 static void painted_spheres_expand_to_spheres(void** state)
@@ -705,6 +774,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(uniform_sheets_open_flat_and_stop_at_lambda),
+        cmocka_unit_test(sheets_keep_to_corners_and_round_ones_have_panels_of_one_size),
         cmocka_unit_test(painted_spheres_expand_to_spheres),
         cmocka_unit_test(stages_of_figure_4),
         cmocka_unit_test(stored_forms_go_on_with_the_same_bits),

@@ -170,7 +170,6 @@ void ax_form_spare_uneven(ax_form* f)
     ax_free(uneven);
 }
 
-// The shape that all panels of the sheet have, as their corners are counted.
 static ax_panel_shape shape_of(const ax_form* f, int triangle)
 {
     static const double equilateral = 1e-9;
@@ -193,17 +192,6 @@ static ax_panel_shape shape_of(const ax_form* f, int triangle)
     return s;
 }
 
-static void find_shapes(ax_form* f)
-{
-    bool found[2] = {false, false};
-    for (int t = 0; t < f->lattice.linkage.triangle_count && !(found[0] && found[1]); ++t) {
-        int down = f->lattice.linkage.panels[t][2] != 0;
-        if (!found[down])
-            f->panel[down] = shape_of(f, t);
-        found[down] = true;
-    }
-}
-
 ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
 {
     ax_form* f = AX_NEW0(ax_form, 1);
@@ -219,23 +207,24 @@ ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit)
     f->deployed = ax_alloc(n, sizeof *f->deployed);
     f->simulated = ax_alloc(n, sizeof *f->simulated);
     f->side = ax_alloc(t, sizeof *f->side);
+    f->panel = ax_alloc(t, sizeof *f->panel);
     f->realised = AX_NEW(double, t);
     f->opening = AX_NEW(double, linkage->hole_count + 1);
     f->material = AX_NEW0(double, n);
     f->pull = AX_NEW0(double, t);
     f->scratch = ax_alloc(2 * n, sizeof *f->scratch);
     f->lanes = AX_NEW(double, 3 * t + 6 * (size_t)linkage->hole_count);
-    find_shapes(f);
     for (size_t k = 0; k < t; ++k) {
         const int* h = linkage->triangles[k];
         f->prescribed[k] = 1;
+        f->panel[k] = shape_of(f, (int)k);
         for (int c = 0; c < 2; ++c) {
             f->centres[k][c] =
                 (f->lattice.hinges[h[0]][c] + f->lattice.hinges[h[1]][c] + f->lattice.hinges[h[2]][c]) / 3;
             f->centre[c] += f->centres[k][c] / (double)t;
         }
         for (int c = 0; c < 3; ++c)
-            f->stretch[k][c] = ax_form_panel(f, (int)k)->edge[c], f->side[k][c] = ax_form_edge(f, (int)k, c);
+            f->stretch[k][c] = f->panel[k].edge[c], f->side[k][c] = ax_form_edge(f, (int)k, c);
     }
     for (size_t k = 0; k < t; ++k)
         f->radius = fmax(f->radius, ax_distance2(f->centres[k], f->centre));
@@ -292,7 +281,7 @@ void ax_form_free(ax_form* f)
                       f->holes,   f->prescribed, f->rim,       f->held,     f->sets,           f->underlays,
                       f->flat,    f->deployed,   f->simulated, f->side,     f->underlay_names, f->clearances,
                       f->pending, f->realised,   f->opening,   f->material, f->scratch,        f->lanes,
-                      f->stretch, f->pull,       f->outline};
+                      f->stretch, f->pull,       f->outline,   f->panel};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_free(f);

@@ -60,7 +60,7 @@ static void size_panels(ax_form* f)
     int lanes = shares ? 1 : 3,
         first = shares ? ax_form_lane("shared_panel", "side") : ax_form_lane("flat_triangle", "lengths");
     for (int k = 0; k < lanes * f->lattice.linkage.triangle_count; ++k)
-        f->lanes[k] = shares ? ax_form_panel(f, k)->size * ax_form_side(f, k) : ax_form_edge(f, k / 3, k % 3);
+        f->lanes[k] = shares ? f->panel[k].size * ax_form_side(f, k) : ax_form_edge(f, k / 3, k % 3);
     ax_solver_set_all(f->shape, f->shape_groups.panels, first, lanes, f->lanes);
 }
 

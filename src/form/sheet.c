@@ -42,17 +42,21 @@ static moments outline_moments(const ax_outline* outline)
     return m;
 }
 
-// Where the outline turns by more than 30 degrees; counted in *count, owned by the caller.
-static double (*list_corners(const ax_outline* outline, int* count))[2]
+// Where the outline turns by more than 30 degrees; counted in *count, owned by the caller. Oblique: somewhere by no right angle.
+static double (*list_corners(const ax_outline* outline, int* count, bool* oblique))[2]
 {
+    static const double right = 1e-3;
     double(*corners)[2] = ax_alloc((size_t)outline->count, sizeof *corners);
-    *count = 0;
+    *count = 0, *oblique = false;
     for (int k = 0; k < outline->count; ++k) {
         const double *a = outline->points[(k + outline->count - 1) % outline->count], *b = outline->points[k],
                      *c = outline->points[(k + 1) % outline->count];
         double in[2] = {b[0] - a[0], b[1] - a[1]}, out[2] = {c[0] - b[0], c[1] - b[1]};
-        if (fabs(atan2(ax_cross2(in, out), in[0] * out[0] + in[1] * out[1])) > AX_PI / 6)
+        double turn = fabs(atan2(ax_cross2(in, out), in[0] * out[0] + in[1] * out[1]));
+        if (turn > AX_PI / 6) {
             memcpy(corners[(*count)++], b, sizeof *corners);
+            *oblique = *oblique || fabs(turn - AX_PI / 2) > right;
+        }
     }
     return corners;
 }
@@ -66,6 +70,7 @@ typedef struct fit {
     double middle[2]; // of its extents
     int corner_count;
     double (*corners)[2];
+    bool oblique; // corners
 } fit;
 
 // Whether a corner's last cell is missing at a rim hinge: hanging on one hinge it was left out. `other` is where its middle would be.
@@ -263,6 +268,8 @@ static void fit_outline(const fit* f, ax_lattice* lattice)
     for (int h = 0; h < lattice->linkage.hinge_count; ++h)
         map_point(&map, lattice->hinges[h]);
     lattice->spacing *= scale;
+    if (f->oblique) // else rows or their ends follow all sides, and panels of round sheets stay alike
+        ax_form_fit_border(lattice, &f->outline, f->border, f->middle);
 }
 
 // The first side of a closed outline that runs across another one, -1 if none does; ends that touch are no crossing.
@@ -333,7 +340,7 @@ ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error*
         bool fits = !(start->edge > 0) && !start->inside;
         fit f = {
             .start = start, .outline = outline, .asked = outline_moments(&outline), .middle = {middle[0], middle[1]}};
-        f.corners = list_corners(&outline, &f.corner_count);
+        f.corners = list_corners(&outline, &f.corner_count, &f.oblique);
         double(*border)[3] = ax_calloc((size_t)n, sizeof *border);
         for (int k = 0; k < n; ++k)
             memcpy(border[k], points[k], sizeof *points);

@@ -13,10 +13,10 @@
 
 // Weights, with panels at 1. docs/form-finding.md tells how each was found.
 static const double hole_weight = 0.1, fair_weight = 0.1, held_fair_weight = 0.02, hang_fair_weight = 0.005,
-                    bend_weight = 0.01, held_bend_weight = 0.002, hang_bend_weight = 0.003, wide_weight = 0.01,
-                    hang_wide_weight = 0.005, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
+                    bend_weight = 0.01, held_bend_weight = 0.002, hang_bend_weight = 0.003, wide_weight = 0.03,
+                    hang_wide_weight = 0.015, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
                     load_strain = 0.1, multiplier_cap = 2;
-static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
+static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35, notch_angle = 0.25;
 
 // Whatever yields, over what it weighs in sheets of 600 panels, those with multipliers at 1. The stiffness of folds grows with the square of
 // the number of panels. Were the others to stand still, it would outweigh them, and multipliers would come to their cap; were they to
@@ -267,6 +267,33 @@ static bool may_fold(const ax_form* f)
     return false;
 }
 
+// Where the rim skips a row, border panels that stretch to their curve come upon those of the next row. Openings run round a missing hole,
+// counter-clockwise: seen from their middle, the first hinge stays ahead of the last in the flat state, by less where panels are nearly
+// closed.
+static void add_notches(const ax_form* f, ax_solver* s)
+{
+    enum { SHORTEST = 5 }; // hinges: shorter ones are wide open
+    const ax_linkage* linkage = &f->lattice.linkage;
+    int(*arms)[3] = ax_alloc((size_t)linkage->opening_count + 1, sizeof *arms), count = 0;
+    double(*bounds)[2] = ax_alloc((size_t)linkage->opening_count + 1, sizeof *bounds);
+    for (int k = 0; k < linkage->opening_count; ++k) {
+        const int* hinges = linkage->opening_hinges + linkage->opening_start[k];
+        int length = linkage->opening_start[k + 1] - linkage->opening_start[k];
+        if (length < SHORTEST)
+            continue;
+        int first = hinges[0], last = hinges[length - 1];
+        double scale = fmax(f->prescribed[f->holder[first][0]], f->prescribed[f->holder[last][0]]);
+        arms[count][0] = hinges[length / 2], arms[count][1] = last, arms[count][2] = first;
+        bounds[count][0] = notch_angle * (2 - scale), bounds[count][1] = 1.5 * AX_PI;
+        ++count;
+    }
+    int group = add(s, "mouth_angle", 3, count, (const int*)arms, 0, 1, NULL);
+    if (group >= 0)
+        ax_solver_set_all(s, group, ax_form_lane("mouth_angle", "lo"), 2, bounds[0]);
+    ax_free(bounds);
+    ax_free(arms);
+}
+
 static void build_shape(ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
@@ -291,7 +318,7 @@ static void build_shape(ax_form* f)
         ax_free(points);
         for (int k = 0; k < t; ++k)
             for (int c = 0; c < 2; ++c)
-                ax_solver_set(s, g->panels, k, ax_form_lane("shared_panel", "lean") + c, ax_form_panel(f, k)->lean[c]);
+                ax_solver_set(s, g->panels, k, ax_form_lane("shared_panel", "lean") + c, f->panel[k].lean[c]);
         int* loops = AX_NEW(int, 6 * (size_t)f->hole_count + 1);
         for (int k = 0; k < f->hole_count; ++k)
             memcpy(loops + 6 * k, linkage->hole_hinges + linkage->hole_start[f->holes[k]], 6 * sizeof *loops);
@@ -313,6 +340,7 @@ static void build_shape(ax_form* f)
         bounds[2 * k] = f->mouth_min, bounds[2 * k + 1] = 2 * AX_PI / 3;
     ax_solver_set_all(s, g->mouths, ax_form_lane("mouth_angle", "lo"), 2, bounds);
     ax_free(bounds);
+    add_notches(f, s);
     double size = f->lattice.spacing / f->radius;
     g->centres =
         add(s, "centroid", 3, t, (const int*)linkage->triangles, 0, centre_weight * size * size * softness_of(f), NULL);

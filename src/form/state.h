@@ -52,7 +52,7 @@ struct ax_form {
     int bend_count, (*bends)[3];   // three in a row
     int wide_count, (*wide)[4];    // every second one of seven in a row, on some lines
     double wide_share;             // rows that one of them stands for
-    ax_panel_shape panel[2];       // of the sheet: pointing up, and down
+    ax_panel_shape* panel;         // of the sheet
     int hole_count, *holes;        // those with six hinges, by number
 
     // asked
@@ -121,11 +121,6 @@ static inline double ax_form_fineness(const ax_form* f)
     return f->lattice.linkage.triangle_count / 600.0;
 }
 
-static inline const ax_panel_shape* ax_form_panel(const ax_form* f, int triangle)
-{
-    return f->panel + (f->lattice.linkage.panels[triangle][2] != 0);
-}
-
 // Ends of edge k of a panel.
 static inline void ax_form_edge_ends(const ax_form* f, int triangle, int k, int* a, int* b)
 {
@@ -150,8 +145,13 @@ static inline double ax_form_side(const ax_form* f, int triangle)
 
 enum { AX_FORM_LEAST = 12, AX_FORM_MOST = 2000000 }; // panels
 
-// The sheet: a lattice over the outline, stretched by up to 2 % to its area and proportions where no edge is given.
+// The sheet: a lattice over the outline, stretched by up to 2 % to its area and proportions where no edge is given, and brought to its
+// border where that has corners which whole panels miss.
 ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error* error);
+
+// Moves a lattice so that its rim keeps to an outline, counter-clockwise; `border` is the same. Sizes of panels come out up to 5 % apart.
+void ax_form_fit_border(ax_lattice* lattice, const ax_outline* outline, const ax_polyline* border,
+                        const double middle[2]);
 
 // Everything but the linkage, allocated for it and derived from it; states at the sheet.
 ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit);

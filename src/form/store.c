@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-static const char magic[8] = "axform07";
+static const char magic[8] = "axform08";
 enum { MOST = 100000000 }; // entries of any one array
 
 typedef struct stream {
