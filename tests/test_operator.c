@@ -1445,6 +1445,53 @@ static void results_do_not_depend_on_resolution(void** state)
     }
 }
 
+static const ax_finding* find_kind(const ax_form_report* report, const char* kind)
+{
+    for (int k = 0; k < report->finding_count; ++k)
+        if (strcmp(report->findings[k].kind, kind) == 0)
+            return report->findings + k;
+    return NULL;
+}
+
+// A sheet with far too much between its corners folds by its panels; one whose surplus is painted has one shape. A form that is opened
+// again says the same.
+static void forms_of_several_shapes_are_told(void** state)
+{
+    (void)state;
+    static const char* const recipes[2] = {
+        "{\"op\": \"start_rectangle\", \"width\": 2, \"height\": 2, \"triangles\": 1600, \"scale\": 1.3}, {\"op\": "
+        "\"rim_fixed\"}, {\"op\": \"gravity\"}",
+        "{\"op\": \"start_circle\", \"radius\": 1, \"triangles\": 1600, \"scale\": 1.25}, {\"op\": \"paint\", "
+        "\"points\": [[0, 0]], \"radius\": 0.95, \"value\": 1.7}, {\"op\": \"rim_circle\", \"radius\": 1.2}, {\"op\": "
+        "\"gravity\"}",
+    };
+    for (int one = 0; one < 2; ++one) {
+        ax_form* form = play(recipes[one]);
+        ax_form_report report;
+        ax_form_measure(form, &report);
+        const ax_finding* finding = find_kind(&report, "resolution");
+        assert_int_equal(finding == NULL, one);
+        size_t size;
+        void* bytes = ax_form_save(form, &size);
+        ax_form* again;
+        ax_error error;
+        assert_int_equal(ax_form_load(bytes, size, &again, &error), AX_OK);
+        ax_form_report reread;
+        ax_form_measure(again, &reread);
+        const ax_finding* same = find_kind(&reread, "resolution");
+        assert_int_equal(same == NULL, one);
+        if (finding) {
+            assert_true(finding->value > 0.02 && finding->hinge >= 0);
+            assert_true(same->value == finding->value && same->hinge == finding->hinge);
+        }
+        ax_free(bytes);
+        ax_form_report_free(&reread);
+        ax_form_report_free(&report);
+        ax_form_free(again);
+        ax_form_free(form);
+    }
+}
+
 // What holds a fine sheet holds the coarser one that settles first, on its own hinges: else the fine one would start far off.
 static void what_holds_a_fine_sheet_is_kept_from_its_start(void** state)
 {
@@ -1512,6 +1559,7 @@ int main(void)
         cmocka_unit_test(what_an_operator_misses_is_told),
         cmocka_unit_test(drawn_sheets_have_their_proportions),
         cmocka_unit_test(stretched_sheets_open_alike_in_all_directions),
+        cmocka_unit_test(forms_of_several_shapes_are_told),
         cmocka_unit_test(what_holds_a_fine_sheet_is_kept_from_its_start),
         cmocka_unit_test(results_do_not_depend_on_resolution),
     };

@@ -13,7 +13,7 @@
 // Limits of what a settled form keeps, and above which people are told.
 enum { MOST_PLACES = 3 }; // told of what is the matter at several
 static const double settled_error = 1e-2, slack_opening = 0.95, tight_multiplier = 2, rim_gap = 0.02, loaded_gap = 0.3,
-                    scale_gap = 0.1, unequal_gap = 0.01;
+                    scale_gap = 0.1, unequal_gap = 0.01, apart_gap = 0.02;
 
 static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kind, double value, double limit,
                         const char* format, ...) __attribute__((format(printf, 6, 7)));
@@ -291,6 +291,12 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
              "equilateral panels can do.",
              100 * unequal, name_place(f, linkage->triangles[unlike][0], place))
             ->triangle = unlike;
+    if (f->apart > apart_gap && moved)
+        tell(r, AX_SEVERITY_WARNING, "resolution", f->apart, apart_gap,
+             "The shape depends on the number of panels: a coarser sheet rests up to %.2g %% of its size away, most at "
+             "%s. Less material there, or more that holds it, leaves one way to fold.",
+             100 * f->apart, name_place(f, f->apart_hinge, place))
+            ->hinge = f->apart_hinge;
     if (r->overlap_pairs) {
         int pair[1][2] = {{-1, -1}};
         ax_measure_overlaps(linkage, (const double(*)[2])f->flat, AX_FORM_OVERLAP * r->edge, 1, pair);

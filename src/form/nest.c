@@ -251,9 +251,40 @@ bool ax_form_nest(ax_form* f, const ax_progress* progress, bool* nested)
         carry(map, (const double(*)[3])coarse->deployed, n, hinges, f->deployed);
         carry(map, (const double(*)[3])coarse->simulated, n, hinges, f->simulated);
         forget_map(map);
+        f->coarse = ax_copy(ax_form_hangs(f) ? f->simulated : f->deployed, (size_t)n, sizeof *f->coarse);
         ax_form_changed(f, false, true);
         *nested = true;
     }
     ax_form_free(coarse);
     return status != AX_CANCELLED;
+}
+
+void ax_form_leave_nest(ax_form* f)
+{
+    static const double margin = 0.05; // of the size of the sheet: nearer to the rim it goes by steps of panels
+    f->apart = 0;
+    if (!f->coarse)
+        return;
+    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
+    double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0;
+    double(*border)[3] = ax_calloc((size_t)f->outline_count, sizeof *border);
+    for (int k = 0; k < f->outline_count; ++k)
+        memcpy(border[k], f->outline[k], sizeof *f->outline);
+    ax_polyline* outline = ax_polyline_make(f->outline_count, (const double(*)[3])border);
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h) {
+        const double* at = f->lattice.hinges[h];
+        for (int c = 0; c < 3; ++c)
+            lo[c] = fmin(lo[c], x[h][c]), hi[c] = fmax(hi[c], x[h][c]);
+        double apart = ax_distance3(x[h], f->coarse[h]);
+        if (apart > f->apart &&
+            ax_polyline_find(outline, (const double[3]){at[0], at[1], 0}).distance > 2 * margin * f->radius)
+            f->apart = apart, f->apart_hinge = h;
+    }
+    for (int c = 0; c < 3; ++c)
+        size = fmax(size, hi[c] - lo[c]);
+    f->apart /= size;
+    ax_polyline_free(outline);
+    ax_free(border);
+    ax_free(f->coarse);
+    f->coarse = NULL;
 }

@@ -279,10 +279,11 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     ax_form_measure_sides(f);
     if (going && ax_form_hangs(f))
         going = load_sheet(f, iterations, own);
+    ax_form_leave_nest(f);
     if (going)
         f->turned = ax_form_turns_over(f);
     else
-        restore(f, &before);
+        restore(f, &before), f->apart = 0;
     forget(&before);
     f->exact = false;
     ++f->revision;

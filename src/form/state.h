@@ -79,6 +79,11 @@ struct ax_form {
     double growth;
     bool exact, settled;
     bool turned; // what was painted when it last settled turned over
+    // Where a coarser sheet of the same design rests, until this one does; NULL: it did not start there. Then how far from there it rests
+    // at most, over its size, and which hinge; 0: not known.
+    double (*coarse)[3];
+    double apart;
+    int apart_hinge;
     unsigned revision;
     int iterations;
     double scaled_step; // largest move of the last iteration over the spacing
@@ -194,6 +199,8 @@ bool ax_form_balance(ax_form* form, double load, const ax_progress* progress, bo
 // Deployed states where those of a coarser sheet of the same design rest, and no multipliers; not `nested` where there is none. False if
 // cancelled.
 bool ax_form_nest(ax_form* form, const ax_progress* progress, bool* nested);
+// Once it rests: measures how far from where that coarser sheet did.
+void ax_form_leave_nest(ax_form* form);
 // Iterations of the shape, flat and deployed, and of the loaded state; solvers are built.
 void ax_form_iterate_shape(ax_form* form, int iterations);
 void ax_form_iterate_hang(ax_form* form, int iterations);

@@ -241,6 +241,9 @@ static void body(stream* s, ax_form* f)
     flag(s, &f->exact);
     flag(s, &f->settled);
     flag(s, &f->turned);
+    REAL(s, f->apart);
+    FIELD(s, f->apart_hinge);
+    s->bad = s->bad || (s->reading && !(f->apart_hinge >= 0 && (size_t)f->apart_hinge < n));
     FIELD(s, f->revision);
     FIELD(s, f->iterations);
 
