@@ -16,7 +16,7 @@ static const double hole_weight = 0.1, fair_weight = 0.1, held_fair_weight = 0.0
                     bend_weight = 0.01, held_bend_weight = 0.002, hang_bend_weight = 0.003, wide_weight = 0.03,
                     hang_wide_weight = 0.015, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
                     load_strain = 0.1, multiplier_cap = 2;
-static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35, notch_angle = 0.25;
+static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
 
 // Whatever yields, over what it weighs in sheets of 600 panels, those with multipliers at 1. The stiffness of folds grows with the square of
 // the number of panels. Were the others to stand still, it would outweigh them, and multipliers would come to their cap; were they to
@@ -268,8 +268,7 @@ static bool may_fold(const ax_form* f)
 }
 
 // Where the rim skips a row, border panels that stretch to their curve come upon those of the next row. Openings run round a missing hole,
-// counter-clockwise: seen from their middle, the first hinge stays ahead of the last in the flat state, by less where panels are nearly
-// closed.
+// counter-clockwise: seen from their middle, the first hinge stays ahead of the last in the flat state, as arms of a mouth do.
 static void add_notches(const ax_form* f, ax_solver* s)
 {
     enum { SHORTEST = 5 }; // hinges: shorter ones are wide open
@@ -281,10 +280,8 @@ static void add_notches(const ax_form* f, ax_solver* s)
         int length = linkage->opening_start[k + 1] - linkage->opening_start[k];
         if (length < SHORTEST)
             continue;
-        int first = hinges[0], last = hinges[length - 1];
-        double scale = fmax(f->prescribed[f->holder[first][0]], f->prescribed[f->holder[last][0]]);
-        arms[count][0] = hinges[length / 2], arms[count][1] = last, arms[count][2] = first;
-        bounds[count][0] = notch_angle * (2 - scale), bounds[count][1] = 1.5 * AX_PI;
+        arms[count][0] = hinges[length / 2], arms[count][1] = hinges[length - 1], arms[count][2] = hinges[0];
+        bounds[count][0] = f->mouth_min, bounds[count][1] = 1.5 * AX_PI;
         ++count;
     }
     int group = add(s, "mouth_angle", 3, count, (const int*)arms, 0, 1, NULL);
