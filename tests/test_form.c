@@ -184,6 +184,15 @@ static void sheets_keep_to_corners_and_round_ones_have_panels_of_one_size(void**
     sizes_of_panels(form, &least, &most);
     assert_near(most / least, 1, 1e-9);
     ax_form_free(form);
+
+    // a corner that is given twice has a side of no length, and no normal
+    const double twice[6][2] = {{-1, -0.7}, {1, -0.7}, {0.6, 0.7}, {0.6, 0.7}, {-0.6, 0.7}, {-0.6, 0.7}};
+    ax_form_start start = {.outline_count = 6, .outline = twice, .triangles = 600, .scale = 1.3, .unit = AX_METRE};
+    ax_error error;
+    assert_int_equal(ax_form_make(&start, &form, &error), AX_OK);
+    sizes_of_panels(form, &least, &most);
+    assert_true(least > 0.9 && most < 1.1);
+    ax_form_free(form);
 }
 
 static void painted_spheres_expand_to_spheres(void** state)

@@ -1428,6 +1428,10 @@ static void results_do_not_depend_on_resolution(void** state)
             char text[800];
             snprintf(text, sizeof text, recipes[k], fine ? 2500 : 600);
             forms[fine] = play(text);
+            ax_form_report report;
+            ax_form_measure(forms[fine], &report);
+            assert_int_equal(report.overlap_pairs + report.flipped, 0);
+            ax_form_report_free(&report);
         }
         ax_form_view coarse = ax_form_look(forms[0]), fine = ax_form_look(forms[1]);
         double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY}, rms[2], most[2];

@@ -43,7 +43,10 @@ static bool fit_series(const ax_lattice* lattice, const ax_outline* outline, con
         double share = (ax_distance2(at, before) + ax_distance2(at, after)) / (2 * length);
         ax_polyline_point on = ax_polyline_find(border, (const double[3]){at[0], at[1], 0});
         const double *a = outline->points[on.segment], *b = outline->points[(on.segment + 1) % outline->count];
-        double side = ax_distance2(a, b), normal[2] = {(b[1] - a[1]) / side, (a[0] - b[0]) / side};
+        double side = ax_distance2(a, b);
+        if (!(side > 0)) // a point that is given twice
+            continue;
+        double normal[2] = {(b[1] - a[1]) / side, (a[0] - b[0]) / side};
         double gap = (on.point[0] - at[0]) * normal[0] + (on.point[1] - at[1]) * normal[1];
         double power[TERMS][2], row[UNKNOWNS]; // of (u + iv) z^j along the normal
         list_powers(s, at, power);

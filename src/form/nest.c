@@ -267,10 +267,7 @@ void ax_form_leave_nest(ax_form* f)
         return;
     const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
     double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0;
-    double(*border)[3] = ax_calloc((size_t)f->outline_count, sizeof *border);
-    for (int k = 0; k < f->outline_count; ++k)
-        memcpy(border[k], f->outline[k], sizeof *f->outline);
-    ax_polyline* outline = ax_polyline_make(f->outline_count, (const double(*)[3])border);
+    ax_polyline* outline = ax_form_outline_line(f->outline_count, (const double(*)[2])f->outline);
     for (int h = 0; h < f->lattice.linkage.hinge_count; ++h) {
         const double* at = f->lattice.hinges[h];
         for (int c = 0; c < 3; ++c)
@@ -284,7 +281,6 @@ void ax_form_leave_nest(ax_form* f)
         size = fmax(size, hi[c] - lo[c]);
     f->apart /= size;
     ax_polyline_free(outline);
-    ax_free(border);
     ax_free(f->coarse);
     f->coarse = NULL;
 }

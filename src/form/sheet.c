@@ -289,6 +289,16 @@ static int find_crossing(int n, const double (*x)[2])
     return -1;
 }
 
+ax_polyline* ax_form_outline_line(int count, const double (*points)[2])
+{
+    double(*lifted)[3] = ax_calloc((size_t)count, sizeof *lifted);
+    for (int k = 0; k < count; ++k)
+        memcpy(lifted[k], points[k], sizeof *points);
+    ax_polyline* line = ax_polyline_make(count, (const double(*)[3])lifted);
+    ax_free(lifted);
+    return line;
+}
+
 ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error* error)
 {
     *lattice = (ax_lattice){0};
@@ -341,11 +351,7 @@ ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error*
         fit f = {
             .start = start, .outline = outline, .asked = outline_moments(&outline), .middle = {middle[0], middle[1]}};
         f.corners = list_corners(&outline, &f.corner_count, &f.oblique);
-        double(*border)[3] = ax_calloc((size_t)n, sizeof *border);
-        for (int k = 0; k < n; ++k)
-            memcpy(border[k], points[k], sizeof *points);
-        f.border = ax_polyline_make(n, (const double(*)[3])border);
-        ax_free(border);
+        f.border = ax_form_outline_line(n, (const double(*)[2])points);
         if (fits)
             search_fit(&f, lattice);
         ax_lattice_renumber(lattice); // names of panels without minus signs

@@ -154,6 +154,9 @@ enum { AX_FORM_LEAST = 12, AX_FORM_MOST = 2000000 }; // panels
 // border where that has corners which whole panels miss.
 ax_status ax_form_lay(const ax_form_start* start, ax_lattice* lattice, ax_error* error);
 
+// An outline, closed, to find places on. The caller frees it.
+ax_polyline* ax_form_outline_line(int count, const double (*points)[2]);
+
 // Moves a lattice so that its rim keeps to an outline, counter-clockwise; `border` is the same. Sizes of panels come out up to 5 % apart.
 void ax_form_fit_border(ax_lattice* lattice, const ax_outline* outline, const ax_polyline* border,
                         const double middle[2]);
