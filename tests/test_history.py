@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """History as users meet it: history, undo, redo, diff, finish, recipes out of documents. AUXSHELL names the program."""
 import json
+import re
 import shutil
 import sqlite3
 import subprocess
@@ -106,6 +107,7 @@ class History(CommandCase):
         same = self.succeed("diff", self.document, other)
         self.assertIn("The recipes are the same: 4 steps.", same)
         self.assertIn("All figures are the same.", same)
+        self.assertIn("The shapes are the same.", same)
         self.make([SMALL[0], {**SMALL[1], "value": 1.6}, *SMALL[2:]])
         lines = self.succeed("diff", other, self.document).splitlines()
         self.assertEqual([line[:5] for line in lines if line[0] in "+-"], ["-   2", "+   2"])
@@ -114,6 +116,20 @@ class History(CommandCase):
         largest = [line for line in lines if "Largest scale factor" in line]
         self.assertEqual(len(largest), 1)
         self.assertLess(float(largest[0].split()[-1]), float(largest[0].split()[-2]))
+        shape = [line for line in lines if "surfaces are" in line]
+        self.assertEqual([line.split()[0] for line in shape], ["deployed", "under"])
+        self.assertRegex(shape[0], r"surfaces are \d+\.\d\d apart at most, \d+\.\d\d rms; points of the sheet \d+\.\d\d,")
+
+    def test_diff_compares_shapes_of_other_panels(self):
+        other = self.folder / "other.auxshell"
+        self.make([{**SMALL[0], "triangles": 300}, *SMALL[1:]])
+        shutil.copy(self.document, other)
+        self.make([{**SMALL[0], "triangles": 400}, *SMALL[1:]])
+        lines = self.succeed("diff", other, self.document).splitlines()
+        figures = [float(x) for line in lines if "surfaces are" in line for x in re.findall(r"\d+\.\d\d", line)]
+        self.assertTrue(figures and all(0 < x < 10 for x in figures), lines)
+        self.make([{**SMALL[0], "unit": "mm"}, *SMALL[1:]])
+        self.assertIn("Shapes are not compared: lengths are in m here and in mm there.", self.succeed("diff", other, self.document))
 
     def test_a_design_has_a_beginning(self):
         self.succeed("design", DOME, "-o", self.document, "--triangles", 100)

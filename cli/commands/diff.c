@@ -4,6 +4,7 @@
 #include "report.h"
 
 #include "ax/document.h"
+#include "ax/form.h"
 #include "ax/session.h"
 
 #include <math.h>
@@ -121,6 +122,37 @@ static void print_figures(const ax_design* a, const ax_design* b)
         printf("All figures are the same.\n");
 }
 
+// How far apart the shapes are, which may have other panels.
+static void print_shapes(ax_form* a, ax_form* b)
+{
+    static const char* const states[] = {"deployed", "under load"};
+    ax_form_view views[2] = {ax_form_look(a), ax_form_look(b)};
+    bool same = true;
+    if (views[0].unit != views[1].unit) {
+        printf("Shapes are not compared: lengths are in %s here and in %s there.\n", ax_unit_name(views[0].unit),
+               ax_unit_name(views[1].unit));
+        return;
+    }
+    for (int loaded = 0; loaded < 2; ++loaded) {
+        if (loaded && !(views[0].simulated && views[1].simulated))
+            continue;
+        ax_form_apart apart;
+        ax_form_measure_apart(a, b, loaded, AX_FORM_APART_MARGIN, &apart);
+        if (apart.surfaces_max == 0 && !(apart.points_max > 0))
+            continue;
+        if (same)
+            printf("Shapes, %% of their size of %.4g %s, off the rim\n", apart.size, ax_unit_name(views[0].unit));
+        same = false;
+        printf("  %-11s surfaces are %.2f apart at most, %.2f rms", states[loaded], 100 * apart.surfaces_max,
+               100 * apart.surfaces_rms);
+        if (apart.hinge >= 0)
+            printf("; points of the sheet %.2f, %.2f rms", 100 * apart.points_max, 100 * apart.points_rms);
+        printf("\n");
+    }
+    if (same)
+        printf("The shapes are the same.\n");
+}
+
 static ax_status compare(const arguments* a, ax_session* const sessions[2], ax_error* error)
 {
     side sides[2];
@@ -136,6 +168,7 @@ static ax_status compare(const arguments* a, ax_session* const sessions[2], ax_e
             printf("%d triangles, %d triangles\n", designs[0].linkage.triangle_count,
                    designs[1].linkage.triangle_count);
         print_figures(&designs[0], &designs[1]);
+        print_shapes(ax_session_form(sessions[0]), ax_session_form(sessions[1]));
     }
     for (int k = 0; k < 2; ++k)
         ax_design_free(&designs[k]);
@@ -159,10 +192,12 @@ static ax_status run(const void* given, ax_error* error)
 
 const command command_diff = {
     .name = "diff",
-    .summary = "compare the recipes and figures of two documents",
+    .summary = "compare the recipes, figures and shapes of two documents",
     .text =
         "Lists the steps that only the first document has (-) and those that only the second one has (+), then every "
-        "figure in which they differ. Only steps that are applied count.",
+        "figure in which they differ, and how far apart the shapes are, which may have other panels: from either "
+        "surface to the other, and for the same points of the sheet where both have one outline. Only steps that are "
+        "applied count.",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .size = sizeof(arguments),

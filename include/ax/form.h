@@ -257,3 +257,16 @@ typedef struct ax_form_report {
 // Measures everything now. `report` is owned by the caller.
 void ax_form_measure(ax_form* form, ax_form_report* report);
 void ax_form_report_free(ax_form_report* report);
+
+// How far the shapes of two forms lie apart, over the largest extent of either. Places are smoothed over the hinges about them.
+typedef struct ax_form_apart {
+    double size;                       // that extent, document units
+    double surfaces_rms, surfaces_max; // from each surface to the nearest point of the other
+    // Of the same points of the sheet, and the first form's hinge where that is most; NaN and -1 unless both were laid over one outline.
+    double points_rms, points_max;
+    int hinge;
+} ax_form_apart;
+#define AX_FORM_APART_MARGIN 0.025 // nearer to the rim a sheet goes by steps of panels
+// Of the deployed states, or of the simulated ones, which both forms must have. What is nearer to the rim than `margin`, 0 to 0.4 of the sheet's
+// size, is left out.
+void ax_form_measure_apart(const ax_form* a, const ax_form* b, bool simulated, double margin, ax_form_apart* apart);

@@ -1,7 +1,7 @@
 // A fresh start of many panels: where a coarser sheet of the same design has come to rest. What is left over between rims folds in more
 // than one way, and which way is told by how the sheet opens. A sheet that starts where a coarser one ended folds as that one does, so
 // that shapes do not depend on the number of panels.
-#include "form/state.h"
+#include "form/map.h"
 
 #include "base/vec.h"
 
@@ -10,66 +10,8 @@
 
 enum { COARSEST = 600, LEVEL = 4, LEAST_NESTED = 900 }; // panels of the first sheet; times as many in the next
 
-// A sheet as a surface in the plane, to find places on.
-typedef struct sheet_map {
-    const ax_form* form;
-    ax_mesh cover;
-    ax_closest* tree;
-    int rim_count, *rim_hinges;
-    ax_polyline* rim;
-} sheet_map;
-
-static sheet_map* map_sheet(const ax_form* f)
-{
-    int n = f->lattice.linkage.hinge_count;
-    sheet_map* m = AX_NEW0(sheet_map, 1);
-    m->form = f;
-    m->rim_hinges = AX_NEW(int, n);
-    double(*places)[3] = ax_calloc((size_t)n, sizeof *places), (*rim)[3] = ax_alloc((size_t)n, sizeof *rim);
-    for (int h = 0; h < n; ++h)
-        memcpy(places[h], f->lattice.hinges[h], sizeof *f->lattice.hinges);
-    m->cover = ax_linkage_cover(&f->lattice.linkage, (const double(*)[3])places);
-    m->tree = ax_closest_make(&m->cover);
-    m->rim_count = ax_linkage_rim(&f->lattice.linkage, m->rim_hinges);
-    for (int k = 0; k < m->rim_count; ++k)
-        memcpy(rim[k], places[m->rim_hinges[k]], sizeof *rim);
-    m->rim = ax_polyline_make(m->rim_count, (const double(*)[3])rim);
-    ax_free(rim);
-    ax_free(places);
-    return m;
-}
-
-static void forget_map(sheet_map* m)
-{
-    ax_closest_free(m->tree);
-    ax_polyline_free(m->rim);
-    ax_mesh_free(&m->cover);
-    ax_free(m->rim_hinges);
-    ax_free(m);
-}
-
-// Values that the hinges of a sheet have, at places on it: linear on its cover, and on beyond its rim.
-static void carry(const sheet_map* m, const double (*values)[3], int count, const double (*places)[2], double (*out)[3])
-{
-    ax_mesh values_cover = ax_linkage_cover(&m->form->lattice.linkage, values);
-    int face = -1;
-    for (int k = 0; k < count; ++k) {
-        double at[3] = {places[k][0], places[k][1], 0}, ab[3], ac[3], ap[3];
-        face = ax_closest_find(m->tree, at, face).face;
-        const int* v = m->cover.faces[face];
-        ax_sub3(m->cover.positions[v[1]], m->cover.positions[v[0]], ab);
-        ax_sub3(m->cover.positions[v[2]], m->cover.positions[v[0]], ac);
-        ax_sub3(at, m->cover.positions[v[0]], ap);
-        double area = ax_cross2(ab, ac), b = ax_cross2(ap, ac) / area, c = ax_cross2(ab, ap) / area;
-        for (int d = 0; d < 3; ++d)
-            out[k][d] = (1 - b - c) * values_cover.positions[v[0]][d] + b * values_cover.positions[v[1]][d] +
-                        c * values_cover.positions[v[2]][d];
-    }
-    ax_mesh_free(&values_cover);
-}
-
 // The hinge of a sheet nearest to each of another; of its rim to those of the other's rim.
-static int* nearest_hinges(const ax_form* from, const sheet_map* to)
+static int* nearest_hinges(const ax_form* from, const ax_sheet_map* to)
 {
     const ax_linkage* linkage = &from->lattice.linkage;
     const double(*hinges)[2] = (const double(*)[2])to->form->lattice.hinges;
@@ -91,7 +33,7 @@ static int* nearest_hinges(const ax_form* from, const sheet_map* to)
     return nearest;
 }
 
-static void carry_factors(const sheet_map* fine, ax_form* coarse)
+static void carry_factors(const ax_sheet_map* fine, ax_form* coarse)
 {
     const ax_form* f = fine->form;
     int n = f->lattice.linkage.hinge_count, t = coarse->lattice.linkage.triangle_count;
@@ -101,7 +43,7 @@ static void carry_factors(const sheet_map* fine, ax_form* coarse)
         const int* holder = f->holder[h];
         at_hinge[h][0] = 0.5 * (f->prescribed[holder[0]] + f->prescribed[holder[holder[1] >= 0]]);
     }
-    carry(fine, (const double(*)[3])at_hinge, t, (const double(*)[2])coarse->centres, at_panel);
+    ax_sheet_map_carry(fine, (const double(*)[3])at_hinge, t, (const double(*)[2])coarse->centres, at_panel);
     for (int k = 0; k < t; ++k)
         coarse->prescribed[k] = ax_clamp(at_panel[k][0], 1, 2);
     ax_free(at_panel);
@@ -123,7 +65,7 @@ static void mean_places(int count, const int* hinges, const double (*places)[3],
 }
 
 // Every coarse hinge of the rim is held as the fine one nearest to it.
-static ax_status carry_rim(const sheet_map* fine, ax_form* coarse, const int* to_coarse, ax_error* error)
+static ax_status carry_rim(const ax_sheet_map* fine, ax_form* coarse, const int* to_coarse, ax_error* error)
 {
     const ax_form* f = fine->form;
     const ax_linkage* linkage = &coarse->lattice.linkage;
@@ -210,15 +152,15 @@ static ax_form* coarsen(const ax_form* f, int panels)
     ax_error error;
     if (ax_form_make(&start, &coarse, &error) != AX_OK)
         return NULL;
-    sheet_map *from = map_sheet(f), *to = map_sheet(coarse);
+    ax_sheet_map *from = ax_sheet_map_make(f), *to = ax_sheet_map_make(coarse);
     int* to_coarse = nearest_hinges(f, to);
     carry_factors(from, coarse);
     ax_status status = carry_rim(from, coarse, to_coarse, &error);
     for (int k = 0; k < f->held_count && status == AX_OK; ++k)
         status = carry_constraint(f->held + k, coarse, to_coarse, &error);
     ax_free(to_coarse);
-    forget_map(from);
-    forget_map(to);
+    ax_sheet_map_free(from);
+    ax_sheet_map_free(to);
     coarse->dynamics = f->dynamics;
     coarse->mouth_min = f->mouth_min;
     coarse->released = f->released;
@@ -247,10 +189,10 @@ bool ax_form_nest(ax_form* f, const ax_progress* progress, bool* nested)
     ax_status status = ax_form_settle(coarse, 0, progress, &error);
     if (status == AX_OK) {
         const double(*hinges)[2] = (const double(*)[2])f->lattice.hinges;
-        sheet_map* map = map_sheet(coarse);
-        carry(map, (const double(*)[3])coarse->deployed, n, hinges, f->deployed);
-        carry(map, (const double(*)[3])coarse->simulated, n, hinges, f->simulated);
-        forget_map(map);
+        ax_sheet_map* map = ax_sheet_map_make(coarse);
+        ax_sheet_map_carry(map, (const double(*)[3])coarse->deployed, n, hinges, f->deployed);
+        ax_sheet_map_carry(map, (const double(*)[3])coarse->simulated, n, hinges, f->simulated);
+        ax_sheet_map_free(map);
         f->coarse = ax_copy(ax_form_hangs(f) ? f->simulated : f->deployed, (size_t)n, sizeof *f->coarse);
         ax_form_changed(f, false, true);
         *nested = true;
