@@ -154,7 +154,7 @@ static bool rim_is_held(const ax_form* f)
 
 // Is the sheet cut to a corner at a hinge where the rim that holds it is an arc? Panels would have to shrink without bound towards such a
 // corner, as the conformal map of it onto an arc does, and fold instead.
-static bool rounds_corner(const ax_form* f, int hinge)
+static bool cut_to_corner(const ax_form* f, int hinge)
 {
     static const double reach = 4, least_share = 0.36, along = 1.5, least_turn = AX_PI / 3;
     const ax_linkage* linkage = &f->lattice.linkage;
@@ -184,6 +184,11 @@ static bool rounds_corner(const ax_form* f, int hinge)
         return arc;
     }
     return false;
+}
+static bool rounds_corner(const ax_form* f, int panel)
+{
+    const int* h = f->lattice.linkage.triangles[panel];
+    return cut_to_corner(f, h[0]) || cut_to_corner(f, h[1]) || cut_to_corner(f, h[2]);
 }
 static const char corner_words[] =
     "the sheet has a corner there, which its rim rounds: round the outline too (fillet), or the rim less";
@@ -278,9 +283,9 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
         int at = most_strained(f, x), hinge = linkage->triangles[at][0];
         tell(r, AX_SEVERITY_FAILURE, "unsettled", worst, settled_error, "Edges are off by %.3g %%, most at %s: %s.",
              100 * worst, name_place(f, hinge, place),
-             !f->iterations            ? "not solved yet"
-             : rounds_corner(f, hinge) ? corner_words
-                                       : "the request cannot be met, or needs more steps")
+             !f->iterations         ? "not solved yet"
+             : rounds_corner(f, at) ? corner_words
+                                    : "the request cannot be met, or needs more steps")
             ->triangle = at;
     }
     int unlike;
@@ -339,7 +344,7 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
     int fold[2], folds = moved ? ax_form_folds(f, x, fold) : 0;
     if (folds) {
         int hinge = linkage->triangles[fold[0]][0];
-        bool corner = rounds_corner(f, hinge);
+        bool corner = rounds_corner(f, fold[0]);
         ax_panel_name(linkage, fold[1], other);
         tell(r, AX_SEVERITY_WARNING, "folded", folds, 0,
              "%d pairs of neighbouring panels are folded onto each other, the first at %s with %s%s%s.", folds,
@@ -421,7 +426,7 @@ ax_status ax_form_fail_joint(ax_form* f, const ax_joint_result* joint, ax_error*
         used += snprintf(text + used, sizeof text - (size_t)used,
                          "where they begin edges differ by up to %.3g %%, at %s, and %d steps lead away from there.",
                          100 * ax_form_deployed_error(f), place, joint->steps);
-    if (rounds_corner(f, f->lattice.linkage.triangles[at][0]))
+    if (rounds_corner(f, at))
         used += snprintf(text + used, sizeof text - (size_t)used, " Mind: %s.", corner_words), ++told;
     ax_form_report report;
     ax_form_measure(f, &report);

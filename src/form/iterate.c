@@ -108,8 +108,53 @@ static void take_states(ax_form* f)
     f->scaled_step = most / f->lattice.spacing;
 }
 
+// Between a painted dome and a rim with too little room for it what is left over opens to either side with equal ease, and as fairness has it,
+// against the load. So the load leans on the open sheet, in one direction and spread as panels are large: all of it while a fresh sheet opens,
+// later a little, where the rim is held all the way round. Sizes give way to that by one or two in a hundred; a sheet that has just the room to lie flat
+// would bulge by nothing else, so the less it bulges the less leans on it.
+static const double kept_lean = 0.07, full_bulge = 0.15;
+
+// `bulge`: by how much the sheet's area is more than its shadow's, over the former.
+static double lean_share(const ax_form* f, double bulge)
+{
+    int loose = 0;
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
+        loose += f->lattice.linkage.on_rim[h];
+    for (int k = 0; k < f->rim_count; ++k)
+        loose -= f->rim[k].kind != AX_RIM_FREE ? f->rim[k].count : 0;
+    return f->opens ? 1 : loose == 0 && ax_form_may_fold(f) ? kept_lean * fmin(1, bulge / full_bulge) : 0;
+}
+
+static void lean(ax_form* f)
+{
+    const ax_linkage* linkage = &f->lattice.linkage;
+    int n = linkage->hinge_count;
+    double along[3] = {0, 0, 0}, area = 0;
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double normal[3];
+        ax_form_panel_normal(f, t, (const double(*)[3])f->deployed, normal);
+        area += ax_norm3(normal);
+        for (int c = 0; c < 3; ++c)
+            along[c] += normal[c];
+    }
+    double bulge = area > 0 ? 1 - ax_norm3(along) / area : 0;
+    if (f->dynamics.kind == AX_DYNAMICS_GRAVITY)
+        memcpy(along, f->dynamics.load.direction, sizeof along);
+    double length = ax_norm3(along), force = length > 0 ? lean_share(f, bulge) * ax_form_load_per_area(f) / length : 0;
+    memset(f->scratch, 0, 2 * (size_t)n * sizeof *f->scratch);
+    for (int t = 0; t < linkage->triangle_count; ++t) {
+        double side = ax_form_side(f, t), share = sqrt(3) * side * side / 3; // it carries four times its area
+        for (int k = 0; k < 3; ++k)
+            for (int c = 0; c < 3; ++c)
+                f->scratch[n + linkage->triangles[t][k]][c] += force * share * along[c];
+    }
+    ax_solver_set_load(f->shape, (const double(*)[3])f->scratch);
+}
+
 void ax_form_iterate_shape(ax_form* f, int iterations)
 {
+    if (ax_form_hangs(f) && ax_form_shares(f))
+        lean(f);
     put_states(f);
     size_panels(f);
     ax_solver_prepare(f->shape);

@@ -27,27 +27,6 @@ static const double coarse_share = 0.3; // of the time, where a coarser sheet se
 static const double astray = 4;         // steps so many times longer after a jump than before it: it is taken back
 static const char shaping[] = "Shaping the sheet", loading[] = "Loading the sheet";
 
-// While a fresh sheet opens, its load leans on it, spread evenly: what lies between a painted dome and a rim with too little room for it
-// opens upwards or downwards with equal ease, and as fairness has it, against the load. Panels keep their sizes at first, so that nothing
-// yields to it; it leans on until they have given way, else what is left over folds as the lattice has it.
-static void lean(ax_form* f, bool on)
-{
-    const ax_linkage* linkage = &f->lattice.linkage;
-    int n = linkage->hinge_count;
-    bool weight = f->dynamics.kind == AX_DYNAMICS_GRAVITY;
-    ax_form_stand stand;
-    ax_form_stand_on(f, &stand);
-    const double* along = weight ? f->dynamics.load.direction : stand.axis[2];
-    memset(f->scratch, 0, 2 * (size_t)n * sizeof *f->scratch);
-    for (int t = 0; t < linkage->triangle_count; ++t) {
-        double side = ax_form_side(f, t), share = sqrt(3) * side * side / 3; // it carries four times its area
-        for (int k = 0; k < 3; ++k)
-            for (int c = 0; c < 3; ++c)
-                f->scratch[n + linkage->triangles[t][k]][c] += ax_form_load_per_area(f) * share * along[c];
-    }
-    ax_solver_set_load(f->shape, on ? (const double(*)[3])f->scratch : NULL);
-}
-
 // States as they were before a call that is cancelled.
 typedef struct snapshot {
     double (*flat)[2], (*deployed)[3], (*simulated)[3], (*side)[3], *multipliers, growth;
@@ -226,19 +205,17 @@ static bool start_afresh(ax_form* f, int iterations, const ax_progress* progress
     if (iterations == 0 && !ax_form_nest(f, ax_progress_within(&part, progress, 0, coarse_share), &nested))
         return false;
     *gone = nested ? coarse_share : 0;
-    if (nested)
-        return true;
-    // panels that give way before the holes are open settle for a flatter shape, and leave it slowly
-    bool leans = ax_form_hangs(f) && ax_form_shares(f);
-    ax_form_allow_give(f, false);
-    if (leans)
-        lean(f, true);
-    ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : FRESH_ITERATIONS);
-    ax_form_allow_give(f, true);
-    if (leans) {
-        ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : LEAN_ITERATIONS);
-        lean(f, false);
+    // Panels that give way before the holes are open settle for a flatter shape, and leave it slowly. All of the load leans on the sheet until they
+    // have given way: what is left over folds as the load has it, not as the lattice does.
+    f->opens = true;
+    if (!nested) {
+        ax_form_allow_give(f, false);
+        ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : FRESH_ITERATIONS);
+        ax_form_allow_give(f, true);
     }
+    if (ax_form_hangs(f) && ax_form_shares(f))
+        ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : LEAN_ITERATIONS);
+    f->opens = false;
     return true;
 }
 

@@ -254,9 +254,7 @@ void ax_form_allow_give(ax_form* f, bool allowed)
     ax_free(lanes);
 }
 
-// A rim that is held may have too much between it. A free one gives way, and a surface that holds every hinge says itself how the
-// sheet bends.
-static bool may_fold(const ax_form* f)
+bool ax_form_may_fold(const ax_form* f)
 {
     for (int k = 0; k < f->held_count; ++k)
         if (f->held[k].kind == AX_HELD_SURFACE && f->held[k].count == f->lattice.linkage.hinge_count)
@@ -323,7 +321,7 @@ static void build_shape(ax_form* f)
         ax_free(loops);
         ax_solver_set_soft(s, g->holes, true);
         fair_rows rows[FAIR_KINDS];
-        if (may_fold(f))
+        if (ax_form_may_fold(f))
             list_fairness(f, held_fair_weight, held_bend_weight, wide_weight, rows);
         else
             list_fairness(f, fair_weight, bend_weight, 0, rows);

@@ -87,6 +87,7 @@ struct ax_form {
     unsigned revision;
     int iterations;
     double scaled_step; // largest move of the last iteration over the spacing
+    bool opens;         // afresh: all of its load leans on it
     double drag;        // proximal stiffness while it opens to be watched, 0: it does not
     int dragged;        // iterations since
 
@@ -190,6 +191,9 @@ void ax_form_build(ax_form* form);
 void ax_form_drop_solvers(ax_form* form);
 // Place of a parameter among the lanes of a constraint type.
 int ax_form_lane(const char* type, const char* parameter);
+// A rim that is held may have too much between it. A free one gives way, and a surface that holds every hinge says itself how the sheet
+// bends.
+bool ax_form_may_fold(const ax_form* form);
 // Whether panels of both states may give way, as far as asked, or not at all for now.
 void ax_form_allow_give(ax_form* form, bool allowed);
 // The load that the solver takes, in forces per area.
