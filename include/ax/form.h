@@ -212,7 +212,7 @@ typedef enum ax_severity { AX_SEVERITY_NOTE, AX_SEVERITY_WARNING, AX_SEVERITY_FA
 typedef struct ax_finding {
     ax_severity severity;
     const char* kind;    // "mouth", "overlap", "unequal", "slack", "tight", "overhang", "held", "scale",
-                         // "clearance", "folded", "flipped", "unsettled", "rim"
+                         // "clearance", "folded", "flipped", "unsettled", "rim", "resolution"
     int triangle, hinge; // where; -1 if nowhere in particular
     int other;           // second panel of a pair, else -1
     double value, limit;
