@@ -85,9 +85,10 @@ static void print_folds(const ax_cut_plan* p, FILE* out)
 {
     if (p->folds)
         fprintf(out,
-                "  Folds           %d pairs of neighbours lie folded onto each other when open, %s and %s first:\n"
+                "  Folds           %d pair%s of neighbours lie%s folded onto each other when open, %s and %s first:\n"
                 "                  no joint bends so far. Paint smaller scale factors there, or tighten to load\n",
-                p->folds, p->panels[p->fold[0]].name, p->panels[p->fold[1]].name);
+                p->folds, p->folds == 1 ? "" : "s", p->folds == 1 ? "s" : "", p->panels[p->fold[0]].name,
+                p->panels[p->fold[1]].name);
 }
 
 static void print_clearance(const ax_cut_plan* p, FILE* out)

@@ -347,8 +347,9 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
         bool corner = rounds_corner(f, fold[0]);
         ax_panel_name(linkage, fold[1], other);
         tell(r, AX_SEVERITY_WARNING, "folded", folds, 0,
-             "%d pairs of neighbouring panels are folded onto each other, the first at %s with %s%s%s.", folds,
-             name_place(f, hinge, place), other, corner ? ": " : "", corner ? corner_words : "");
+             "%d pair%s of neighbouring panels %s folded onto each other, the first at %s with %s%s%s.", folds,
+             folds == 1 ? "" : "s", folds == 1 ? "is" : "are", name_place(f, hinge, place), other, corner ? ": " : "",
+             corner ? corner_words : "");
         r->findings[r->finding_count - 1].triangle = fold[0];
         r->findings[r->finding_count - 1].other = fold[1];
     }

@@ -276,12 +276,15 @@ static check overlap_check(const ax_form_report* r)
     check c = {"overlap",      "Collisions", .value = count ? count : f ? f->value : 0,
                .triangle = -1, .hinge = -1,  .other = -1};
     snprintf(c.limit, sizeof c.limit, "none may meet");
-    if (count)
-        snprintf(c.answer, sizeof c.answer, "%d pairs overlap, %d turned over", r->overlap_pairs, r->flipped);
+    if (r->overlap_pairs)
+        snprintf(c.answer, sizeof c.answer, "%d pair%s", r->overlap_pairs,
+                 r->overlap_pairs == 1 ? " overlaps" : "s overlap");
+    else if (count)
+        snprintf(c.answer, sizeof c.answer, "%d turned over", count);
     else if (!f)
         snprintf(c.answer, sizeof c.answer, "none");
     else if (strcmp(f->kind, "folded") == 0)
-        snprintf(c.answer, sizeof c.answer, "%.0f pairs folded together", f->value);
+        snprintf(c.answer, sizeof c.answer, "%.0f pair%s folded", f->value, f->value == 1 ? "" : "s");
     else {
         snprintf(c.answer, sizeof c.answer, "%.3g from the site", f->value);
         snprintf(c.limit, sizeof c.limit, "%.3g are asked", f->limit);
