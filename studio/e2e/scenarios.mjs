@@ -221,7 +221,7 @@ export const scenarios = {
                 window.answer = await auxshell.session.command("new", { recipe: operators });
                 stop();
                 return seen;
-            }, [{ ...circle, triangles: 5000 }, ...bowl.slice(1)]);
+            }, [{ ...circle, triangles: 12000 }, ...bowl.slice(1)]); // so many that the hand is quicker
             assert.equal(await page.evaluate(() => window.answer), null);
             assert.ok(heights.length >= 4, `${heights.length} states were seen`);
             await page.waitForFunction(() => !auxshell.session.making.value);
