@@ -61,8 +61,12 @@ int main(int argc, char** argv)
     for (; argc > 3 && strncmp(argv[1], "--", 2) == 0; argc -= 2, argv += 2)
         if (strcmp(argv[1], "--json") == 0)
             json = argv[2];
+        else if (strcmp(argv[1], "--coarse") == 0)
+            panels[0] = atoi(argv[2]);
+        else if (strcmp(argv[1], "--fine") == 0)
+            panels[1] = atoi(argv[2]);
         else
-            panels[strcmp(argv[1], "--fine") == 0] = atoi(argv[2]);
+            break;
     json_error_t problem;
     json_t* forms = argc > 1 ? json_load_file(argv[1], 0, &problem) : NULL;
     FILE* file = fopen(json, "w");

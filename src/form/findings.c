@@ -185,11 +185,13 @@ static bool cut_to_corner(const ax_form* f, int hinge)
     }
     return false;
 }
+
 static bool rounds_corner(const ax_form* f, int panel)
 {
     const int* h = f->lattice.linkage.triangles[panel];
     return cut_to_corner(f, h[0]) || cut_to_corner(f, h[1]) || cut_to_corner(f, h[2]);
 }
+
 static const char corner_words[] =
     "the sheet has a corner there, which its rim rounds: round the outline too (fillet), or the rim less";
 

@@ -196,6 +196,19 @@ static bool load_sheet(ax_form* f, int iterations, const ax_progress* progress)
     return balanced || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, progress, 0.8, 1);
 }
 
+// Iterations of the shape under all of its load. False if cancelled.
+static bool lean_on(ax_form* f, int iterations, const ax_progress* progress, double gone)
+{
+    bool going = true;
+    f->opens = true;
+    for (int done = 0; done < iterations && going; done += REST_CHECK) {
+        ax_form_iterate_shape(f, REST_CHECK < iterations - done ? REST_CHECK : iterations - done);
+        going = ax_progress_report(progress, shaping, gone, shape_error(f));
+    }
+    f->opens = false;
+    return going;
+}
+
 // Opens a sheet that is nearly flat, or takes the places of a coarser one that has opened: then so much of the time has gone by. False if
 // cancelled.
 static bool start_afresh(ax_form* f, int iterations, const ax_progress* progress, double* gone)
@@ -207,16 +220,16 @@ static bool start_afresh(ax_form* f, int iterations, const ax_progress* progress
     *gone = nested ? coarse_share : 0;
     // Panels that give way before the holes are open settle for a flatter shape, and leave it slowly. All of the load leans on the sheet until they
     // have given way: what is left over folds as the load has it, not as the lattice does.
-    f->opens = true;
+    int share = iterations / 4;
     if (!nested) {
         ax_form_allow_give(f, false);
-        ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : FRESH_ITERATIONS);
+        bool going = lean_on(f, iterations > 0 ? share : FRESH_ITERATIONS, progress, *gone);
         ax_form_allow_give(f, true);
+        if (!going)
+            return false;
     }
-    if (ax_form_hangs(f) && ax_form_shares(f))
-        ax_form_iterate_shape(f, iterations > 0 ? iterations / 4 : LEAN_ITERATIONS);
-    f->opens = false;
-    return true;
+    return !(ax_form_hangs(f) && ax_form_shares(f)) ||
+           lean_on(f, iterations > 0 ? share : LEAN_ITERATIONS, progress, *gone);
 }
 
 ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress, ax_error* error)
