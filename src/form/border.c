@@ -114,3 +114,40 @@ void ax_form_fit_border(ax_lattice* lattice, const ax_outline* outline, const ax
     for (int h = 0; h < n; ++h)
         move(&s, share, (const double[2]){lattice->hinges[h][0], lattice->hinges[h][1]}, lattice->hinges[h]);
 }
+
+// Whether places of three hinges in a row are to each other as on the sheet.
+static bool is_alike(const double* const place[3], const double* const sheet[3])
+{
+    static const double alike = 0.02;
+    double across = ax_distance3(place[0], place[2]), whole = ax_distance2(sheet[0], sheet[2]);
+    bool is = across > 0 && whole > 0;
+    for (int k = 0; k < 3 && is; k += 2)
+        is = fabs(ax_distance3(place[k], place[1]) / across - ax_distance2(sheet[k], sheet[1]) / whole) < alike;
+    return is;
+}
+
+void ax_form_list_fitting(const ax_form* f, unsigned char* fits)
+{
+    static const double on_outline = 0.05; // spacings
+    const ax_linkage* linkage = &f->lattice.linkage;
+    int n = linkage->hinge_count, *rim = AX_NEW(int, n), count = ax_linkage_rim(linkage, rim);
+    const double** place = AX_NEW0(const double*, n);
+    for (int k = 0; k < f->rim_count; ++k)
+        for (int i = 0; i < f->rim[k].count && f->rim[k].kind == AX_RIM_FIXED; ++i)
+            place[f->rim[k].hinges[i]] = f->rim[k].places[i];
+    ax_polyline* outline =
+        f->outline_count > 0 ? ax_form_outline_line(f->outline_count, (const double(*)[2])f->outline) : NULL;
+    memset(fits, 0, (size_t)n);
+    for (int k = 0; k < count && outline; ++k) {
+        int row[3] = {rim[(k + count - 1) % count], rim[k], rim[(k + 1) % count]};
+        const double *held[3], *sheet[3];
+        for (int i = 0; i < 3; ++i)
+            held[i] = place[row[i]], sheet[i] = f->lattice.hinges[row[i]];
+        double at[3] = {sheet[1][0], sheet[1][1], 0};
+        fits[rim[k]] = held[0] && held[1] && held[2] && is_alike(held, sheet) &&
+                       ax_polyline_find(outline, at).distance < on_outline * f->lattice.spacing;
+    }
+    ax_polyline_free(outline);
+    ax_free(place);
+    ax_free(rim);
+}

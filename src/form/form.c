@@ -106,8 +106,8 @@ static int* list_directions(const ax_form* f)
 }
 
 // Every second one of seven hinges on kagome lines. In fine sheets some of these rows stand for all, as far apart as all are in one of
-// 600 panels: those on every second, third ... line, and of the two kinds of hinges that take turns on it those of one. Folds are
-// wider than that, and a row that spans six panels is dear: at 2,000 panels a fifth of the work of a factorisation is left.
+// 600 panels: those on every second, third ... line, and of the two kinds of hinges that take turns on it those of one, in turn from line to
+// line: mirror images of the sheet stay alike. Folds are wider than that, and a row that spans six panels is dear: at 2,000 panels a fifth of the work of a factorisation is left.
 static void list_wide(ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
@@ -133,7 +133,7 @@ static void list_wide(ax_form* f)
             ++all;
             const int* p = linkage->panels[t];
             int line = along == 0 ? p[1] : along == 1 ? p[0] : p[0] + p[1] + p[2];
-            if (line % apart == 0 && (apart == 1 || direction[row[0]] == (along + 1) % 3))
+            if (line % apart == 0 && (apart == 1 || direction[row[0]] == (along + 1 + (line / apart & 1)) % 3))
                 memcpy(f->wide[f->wide_count++], row, sizeof row);
         }
     f->wide_share = f->wide_count > 0 ? (double)all / f->wide_count : 0;

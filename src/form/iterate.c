@@ -8,32 +8,58 @@
 
 enum { RESIZE_EVERY = 25 };
 
-// The sheet's panel centres, turned and shifted to where the flat state has them, grown only if collisions may grow it: the targets
-// that choose among the sheet's many flat states the one whose scale factors are the prescribed ones.
-static void aim_centres(ax_form* f)
+// A turn, a growth and a shift of the plane: from + x goes to to + (re + i im) x.
+typedef struct similarity {
+    double from[2], to[2], re, im, growth;
+} similarity;
+
+// That which brings the sheet's panel centres nearest to the flat state's, grown only if collisions may grow it.
+static similarity fit_sheet(const ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
     int t = linkage->triangle_count;
-    double mean[2] = {0, 0}, re = 0, im = 0, norm = 0;
+    similarity s = {.from = {f->centre[0], f->centre[1]}};
+    double norm = 0, (*centres)[2] = (double(*)[2])f->lanes;
     for (int k = 0; k < t; ++k)
         for (int c = 0; c < 2; ++c) {
             const int* h = linkage->triangles[k];
-            f->lanes[3 * k + c] = (f->flat[h[0]][c] + f->flat[h[1]][c] + f->flat[h[2]][c]) / 3;
-            mean[c] += f->lanes[3 * k + c] / t;
+            centres[k][c] = (f->flat[h[0]][c] + f->flat[h[1]][c] + f->flat[h[2]][c]) / 3;
+            s.to[c] += centres[k][c] / t;
         }
     for (int k = 0; k < t; ++k) {
-        double x = f->lanes[3 * k] - mean[0], y = f->lanes[3 * k + 1] - mean[1];
+        double x = centres[k][0] - s.to[0], y = centres[k][1] - s.to[1];
         double u = f->centres[k][0] - f->centre[0], v = f->centres[k][1] - f->centre[1];
-        re += u * x + v * y, im += u * y - v * x, norm += u * u + v * v;
+        s.re += u * x + v * y, s.im += u * y - v * x, norm += u * u + v * v;
     }
-    re /= norm, im /= norm;
-    double fit = sqrt(re * re + im * im), growth = f->dynamics.collisions ? fmax(1, fit) : 1;
-    double s = fit > 0 ? growth / fit : 1;
-    re = fit > 0 ? re * s : 1, im *= s;
-    f->growth = growth;
-    for (int k = 0; k < t; ++k) {
-        double u = f->centres[k][0] - f->centre[0], v = f->centres[k][1] - f->centre[1];
-        f->lanes[3 * k] = mean[0] + re * u - im * v, f->lanes[3 * k + 1] = mean[1] + im * u + re * v;
+    s.re /= norm, s.im /= norm;
+    double fit = sqrt(s.re * s.re + s.im * s.im);
+    s.growth = f->dynamics.collisions ? fmax(1, fit) : 1;
+    double grown = fit > 0 ? s.growth / fit : 1;
+    s.re = fit > 0 ? s.re * grown : 1, s.im *= grown;
+    return s;
+}
+
+static void carry(const similarity* s, const double x[2], double to[2])
+{
+    double u = x[0] - s->from[0], v = x[1] - s->from[1];
+    to[0] = s->to[0] + s->re * u - s->im * v, to[1] = s->to[1] + s->im * u + s->re * v;
+}
+
+void ax_form_flat_places(const ax_form* f, int count, const int* hinges, double (*places)[2])
+{
+    similarity s = fit_sheet(f);
+    for (int k = 0; k < count; ++k)
+        carry(&s, f->lattice.hinges[hinges[k]], places[k]);
+}
+
+// The sheet's panel centres where the flat state has them: the targets that choose among the sheet's many flat states the one whose scale
+// factors are the prescribed ones.
+static void aim_centres(ax_form* f)
+{
+    similarity s = fit_sheet(f);
+    f->growth = s.growth;
+    for (int k = 0; k < f->lattice.linkage.triangle_count; ++k) {
+        carry(&s, f->centres[k], f->lanes + 3 * k);
         f->lanes[3 * k + 2] = 0;
     }
     ax_solver_set_all(f->shape, f->shape_groups.centres, 0, 3, f->lanes);
@@ -114,15 +140,20 @@ static void take_states(ax_form* f)
 // would bulge by nothing else, so the less it bulges the less leans on it.
 static const double kept_lean = 0.07, full_bulge = 0.15;
 
-// `bulge`: by how much the sheet's area is more than its shadow's, over the former.
-static double lean_share(const ax_form* f, double bulge)
+bool ax_form_held_all_round(const ax_form* f)
 {
     int loose = 0;
     for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
         loose += f->lattice.linkage.on_rim[h];
     for (int k = 0; k < f->rim_count; ++k)
         loose -= f->rim[k].kind != AX_RIM_FREE ? f->rim[k].count : 0;
-    return f->opens ? 1 : loose == 0 && ax_form_may_fold(f) ? kept_lean * fmin(1, bulge / full_bulge) : 0;
+    return loose == 0 && ax_form_may_fold(f);
+}
+
+// `bulge`: by how much the sheet's area is more than its shadow's, over the former.
+static double lean_share(const ax_form* f, double bulge)
+{
+    return f->opens ? 1 : ax_form_held_all_round(f) ? kept_lean * fmin(1, bulge / full_bulge) : 0;
 }
 
 static void lean(ax_form* f)

@@ -50,18 +50,22 @@ static void carry_factors(const ax_sheet_map* fine, ax_form* coarse)
     ax_free(at_hinge);
 }
 
-// Of places that fine hinges are held at, the mean over those to which each coarse one is nearest.
-static void mean_places(int count, const int* hinges, const double (*places)[3], const int* to_coarse, int coarse_count,
-                        double (*mean)[3], int* members)
+// Where a coarse hinge is held: as far from its own place on the sheet as the fine ones are, in the mean, to which it is nearest.
+static void mean_places(const ax_form* f, const ax_form* coarse, int count, const int* hinges,
+                        const double (*places)[3], const int* to_coarse, double (*mean)[3], int* members)
 {
+    int coarse_count = coarse->lattice.linkage.hinge_count;
     memset(mean, 0, (size_t)coarse_count * sizeof *mean);
     memset(members, 0, (size_t)coarse_count * sizeof *members);
     for (int i = 0; i < count; ++i) {
         int h = to_coarse[hinges[i]];
         ++members[h];
         for (int c = 0; c < 3; ++c)
-            mean[h][c] += (places[i][c] - mean[h][c]) / members[h];
+            mean[h][c] += (places[i][c] - (c < 2 ? f->lattice.hinges[hinges[i]][c] : 0) - mean[h][c]) / members[h];
     }
+    for (int h = 0; h < coarse_count; ++h)
+        for (int c = 0; c < 2; ++c)
+            mean[h][c] += coarse->lattice.hinges[h][c];
 }
 
 // Every coarse hinge of the rim is held as the fine one nearest to it.
@@ -80,7 +84,7 @@ static ax_status carry_rim(const ax_sheet_map* fine, ax_form* coarse, const int*
         for (int i = 0; i < from->count; ++i)
             place_of[from->hinges[i]] = i + 1;
         if (from->kind == AX_RIM_FIXED)
-            mean_places(from->count, from->hinges, from->places, to_coarse, n, mean, members);
+            mean_places(f, coarse, from->count, from->hinges, from->places, to_coarse, mean, members);
         for (int h = 0; h < n; ++h)
             if (linkage->on_rim[h] && place_of[to_fine[h]]) {
                 if (from->kind == AX_RIM_FIXED)
@@ -106,15 +110,15 @@ static ax_status carry_rim(const ax_sheet_map* fine, ax_form* coarse, const int*
 }
 
 // Holds coarse hinges to which fine ones that are held are nearest, each once.
-static ax_status carry_constraint(const ax_form_constraint* from, ax_form* coarse, const int* to_coarse,
-                                  ax_error* error)
+static ax_status carry_constraint(const ax_form* f, const ax_form_constraint* from, ax_form* coarse,
+                                  const int* to_coarse, ax_error* error)
 {
     int n = coarse->lattice.linkage.hinge_count, *hinges = AX_NEW(int, from->count), *members = AX_NEW(int, n);
     int each = from->kind == AX_HELD_MIRROR ? 2 : from->kind == AX_HELD_ROTATION ? from->order : 1;
     unsigned char* taken = AX_NEW0(unsigned char, n);
     double(*mean)[3] = ax_alloc((size_t)n, sizeof *mean), (*places)[3] = ax_alloc((size_t)from->count, sizeof *places);
     if (from->kind == AX_HELD_FIXED)
-        mean_places(from->count, from->hinges, from->places, to_coarse, n, mean, members);
+        mean_places(f, coarse, from->count, from->hinges, from->places, to_coarse, mean, members);
     ax_form_constraint c = *from;
     c.hinges = hinges;
     c.places = (const double(*)[3])places;
@@ -157,7 +161,7 @@ static ax_form* coarsen(const ax_form* f, int panels)
     carry_factors(from, coarse);
     ax_status status = carry_rim(from, coarse, to_coarse, &error);
     for (int k = 0; k < f->held_count && status == AX_OK; ++k)
-        status = carry_constraint(f->held + k, coarse, to_coarse, &error);
+        status = carry_constraint(f, f->held + k, coarse, to_coarse, &error);
     ax_free(to_coarse);
     ax_sheet_map_free(from);
     ax_sheet_map_free(to);

@@ -24,6 +24,8 @@ enum {
 static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 2e-3, good_error = 5e-3, balance_error = 0.03;
 static const double block_step = 1e-4;  // in lattice spacings
 static const double coarse_share = 0.3; // of the time, where a coarser sheet settles first
+static const double first_share = 0.8;  // of what is left, where a fresh sheet may have to rest twice
+static const double popped = 0.1;       // of the sheet's radius
 static const double astray = 4;         // steps so many times longer after a jump than before it: it is taken back
 static const char shaping[] = "Shaping the sheet", loading[] = "Loading the sheet";
 
@@ -232,6 +234,29 @@ static bool start_afresh(ax_form* f, int iterations, const ax_progress* progress
            lean_on(f, iterations > 0 ? share : LEAN_ITERATIONS, progress, *gone);
 }
 
+// Both states at rest. False if cancelled.
+static bool rest(ax_form* f, int iterations, const ax_progress* progress)
+{
+    double half = ax_form_hangs(f) ? 0.5 : 1;
+    bool going;
+    if (iterations == 0 && ax_form_shares(f))
+        going = shape_sheet(f, progress, half);
+    else
+        going = run(f, true, iterations > 0 ? iterations : FLAT_ITERATIONS,
+                    iterations > 0 ? iterations : MOST_ITERATIONS, progress, 0, half);
+    ax_form_measure_sides(f);
+    return going && (!ax_form_hangs(f) || load_sheet(f, iterations, progress));
+}
+
+// Whether a part of a sheet that is held all the way round bulged against its load, and has turned over under it.
+static bool has_popped(const ax_form* f)
+{
+    double moved = 0;
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
+        moved = fmax(moved, ax_distance3(f->deployed[h], f->simulated[h]));
+    return moved > popped * f->radius && ax_form_hangs(f) && ax_form_shares(f) && ax_form_held_all_round(f);
+}
+
 ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress, ax_error* error)
 {
     int n = f->lattice.linkage.hinge_count;
@@ -259,16 +284,12 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     if (fresh)
         going = start_afresh(f, iterations, progress, &from);
     ax_progress_part part;
-    const ax_progress* own = ax_progress_within(&part, progress, from, 1);
-    double half = ax_form_hangs(f) ? 0.5 : 1;
-    if (going && iterations == 0 && ax_form_shares(f))
-        going = shape_sheet(f, own, half);
-    else if (going)
-        going = run(f, true, iterations > 0 ? iterations : FLAT_ITERATIONS,
-                    iterations > 0 ? iterations : MOST_ITERATIONS, own, 0, half);
-    ax_form_measure_sides(f);
-    if (going && ax_form_hangs(f))
-        going = load_sheet(f, iterations, own);
+    double to = fresh ? from + first_share * (1 - from) : 1;
+    going = going && rest(f, iterations, ax_progress_within(&part, progress, from, to));
+    if (going && fresh && iterations == 0 && has_popped(f)) { // it opens again, from where it hangs
+        memcpy(f->deployed, f->simulated, (size_t)n * sizeof *f->deployed);
+        going = rest(f, 0, ax_progress_within(&part, progress, to, 1));
+    }
     ax_form_leave_nest(f);
     if (going)
         f->turned = ax_form_turns_over(f);

@@ -239,18 +239,23 @@ void ax_form_allow_give(ax_form* f, bool allowed)
         return;
     bool gives = allowed && f->dynamics.give > 0;
     double(*lanes)[4] = ax_alloc((size_t)linkage->triangle_count, sizeof *lanes);
+    unsigned char* fits = AX_NEW(unsigned char, linkage->hinge_count);
+    ax_form_list_fitting(f, fits);
     for (int t = 0; t < linkage->triangle_count; ++t) {
         const int* h = linkage->triangles[t];
-        bool border = linkage->on_rim[h[0]] || linkage->on_rim[h[1]] || linkage->on_rim[h[2]];
+        bool border = false, strays = false;
+        for (int k = 0; k < 3; ++k)
+            border = border || linkage->on_rim[h[k]], strays = strays || (linkage->on_rim[h[k]] && !fits[h[k]]);
         bool released = border && f->released && gives;
         lanes[t][0] = gives ? softness_of(f) / ((released ? 3 : 1) * f->dynamics.give)
                             : 1e6; // border panels give way more easily
-        lanes[t][1] = released ? border_skew : 0;
+        lanes[t][1] = released && strays ? border_skew : 0;
         lanes[t][2] = border_lo, lanes[t][3] = border_hi;
     }
     int first = ax_form_lane("shared_panel", "draw");
     assert(ax_form_lane("shared_panel", "hi") == first + 3);
     ax_solver_set_all(f->shape, f->shape_groups.panels, first, 4, lanes[0]);
+    ax_free(fits);
     ax_free(lanes);
 }
 

@@ -41,7 +41,7 @@ struct ax_form {
     ax_lattice lattice;
     ax_unit unit;
     int outline_count;
-    double (*outline)[2]; // that the sheet was laid over; NULL: it comes from a design
+    double (*outline)[2]; // that the sheet was laid over; none: it comes from a design
 
     // derived from the lattice
     double centre[2], radius;      // of the sheet
@@ -161,6 +161,8 @@ ax_polyline* ax_form_outline_line(int count, const double (*points)[2]);
 // Moves a lattice so that its rim keeps to an outline, counter-clockwise; `border` is the same. Sizes of panels come out up to 5 % apart.
 void ax_form_fit_border(ax_lattice* lattice, const ax_outline* outline, const ax_polyline* border,
                         const double middle[2]);
+// Hinges of the rim that are fixed on the outline and stand to their neighbours as on the sheet, whose panels have nothing to reach for.
+void ax_form_list_fitting(const ax_form* form, unsigned char* fits);
 
 // Everything but the linkage, allocated for it and derived from it; states at the sheet.
 ax_form* ax_form_over(ax_lattice* lattice, ax_unit unit);
@@ -194,6 +196,8 @@ int ax_form_lane(const char* type, const char* parameter);
 // A rim that is held may have too much between it. A free one gives way, and a surface that holds every hinge says itself how the sheet
 // bends.
 bool ax_form_may_fold(const ax_form* form);
+// Whether there may be, and no hinge of the rim is free.
+bool ax_form_held_all_round(const ax_form* form);
 // Whether panels of both states may give way, as far as asked, or not at all for now.
 void ax_form_allow_give(ax_form* form, bool allowed);
 // The load that the solver takes, in forces per area.

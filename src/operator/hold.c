@@ -151,13 +151,17 @@ ax_status ax_hold_places(const ax_operator_context* context, int at, const ax_po
                        given->count);
     ax_form_view view = ax_form_look(*context->form);
     *places = ax_calloc((size_t)count, sizeof **places);
+    double(*flat)[2] = ax_alloc((size_t)count + 1, sizeof *flat);
+    if (at == AX_AT_FLAT)
+        ax_form_flat_places(*context->form, count, hinges, flat);
     for (int k = 0; k < count; ++k) {
         int h = hinges[k], width = at == AX_AT_FLAT || at == AX_AT_SHEET ? 2 : 3;
-        const double* from = at == AX_AT_FLAT       ? view.flat[h]
+        const double* from = at == AX_AT_FLAT       ? flat[k]
                              : at == AX_AT_SHEET    ? view.sheet[h]
                              : at == AX_AT_DEPLOYED ? view.deployed[h]
                                                     : given->values + 3 * (size_t)k;
         memcpy((*places)[k], from, (size_t)width * sizeof *from);
     }
+    ax_free(flat);
     return AX_OK;
 }

@@ -17,9 +17,10 @@ static void defaults(void* given)
 static const ax_field fields[] = {
     AX_HOLD_NAME(arguments),
     AX_HOLD_HINGES(arguments, .required = true),
-    AX_CHOICE(arguments, at, "At", ax_at_words,
-              .doc =
-                  "Where they are now: in the flat state, the deployed one, or on the sheet; or at the points given."),
+    AX_CHOICE(
+        arguments, at, "At", ax_at_words,
+        .doc = "Where they are now: where the sheet lies in the flat state, the turn of its panels left out, so that "
+               "sides are straight; where they are deployed; where the sheet was laid; or at the points given."),
     AX_POINTS(arguments, points, "Places", 3, 1, .doc = "One place for each hinge, in order, for at = points."),
     AX_HOLD_WEIGHT(arguments),
     AX_HOLD_SUPPORT(arguments),
