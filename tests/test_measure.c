@@ -137,6 +137,11 @@ static void a_turn_is_no_move_and_a_lift_is(void** state)
         memcpy(to[h], turned, sizeof *to);
     }
     assert_near(ax_measure_move(COUNT, (const double(*)[3])from, (const double(*)[3])to), 0, 1e-12);
+    double turned[COUNT][3];
+    ax_measure_turned(COUNT, (const double(*)[3])from,
+                      ax_measure_turn(COUNT, (const double(*)[3])from, (const double(*)[3])to), turned);
+    for (int h = 0; h < COUNT; ++h)
+        assert_near(ax_distance3(turned[h], to[h]), 0, 1e-12);
     to[7][2] += 0.25;
     assert_near(ax_measure_move(COUNT, (const double(*)[3])from, (const double(*)[3])to), 0.25, 1e-12);
 }

@@ -7,25 +7,44 @@
 #include <stdlib.h>
 #include <string.h>
 
-double ax_measure_move(int count, const double (*from)[3], const double (*to)[3])
+static void middle_of(int count, const double (*x)[3], double middle[2])
 {
-    double middle[2] = {0, 0}, along = 0, across = 0, most = 0;
+    middle[0] = middle[1] = 0;
     for (int h = 0; h < count; ++h)
         for (int c = 0; c < 2; ++c)
-            middle[c] += from[h][c] / count;
+            middle[c] += x[h][c] / count;
+}
+
+double ax_measure_turn(int count, const double (*from)[3], const double (*to)[3])
+{
+    double middle[2], along = 0, across = 0;
+    middle_of(count, from, middle);
     for (int h = 0; h < count; ++h) {
         double u[2] = {from[h][0] - middle[0], from[h][1] - middle[1]};
         double v[2] = {to[h][0] - middle[0], to[h][1] - middle[1]};
         along += u[0] * v[0] + u[1] * v[1], across += u[0] * v[1] - u[1] * v[0];
     }
-    double length = hypot(along, across), cosine = length > 0 ? along / length : 1,
-           sine = length > 0 ? across / length : 0;
+    return atan2(across, along);
+}
+
+void ax_measure_turned(int count, const double (*from)[3], double angle, double (*to)[3])
+{
+    double middle[2], cosine = cos(angle), sine = sin(angle);
+    middle_of(count, from, middle);
     for (int h = 0; h < count; ++h) {
         double u[2] = {from[h][0] - middle[0], from[h][1] - middle[1]};
-        const double turned[3] = {middle[0] + cosine * u[0] - sine * u[1], middle[1] + sine * u[0] + cosine * u[1],
-                                  from[h][2]};
-        most = fmax(most, ax_distance3(turned, to[h]));
+        to[h][0] = middle[0] + cosine * u[0] - sine * u[1], to[h][1] = middle[1] + sine * u[0] + cosine * u[1];
+        to[h][2] = from[h][2];
     }
+}
+
+double ax_measure_move(int count, const double (*from)[3], const double (*to)[3])
+{
+    double most = 0, (*turned)[3] = ax_alloc((size_t)count, sizeof *turned);
+    ax_measure_turned(count, from, ax_measure_turn(count, from, to), turned);
+    for (int h = 0; h < count; ++h)
+        most = fmax(most, ax_distance3(turned[h], to[h]));
+    ax_free(turned);
     return most;
 }
 

@@ -19,10 +19,15 @@ enum {
     BLOCK = 15, // iterations between two states of which the limit is taken
     BLOCKS = 5, // until only slow modes are left
     STATES = 5,
-    STALLED = 450 // iterations without better edges: they cannot be right
+    TURNS = 4,         // of a sheet in its rim, at most
+    FIRST_TURN = 3000, // blocks of iterations that it stands for
+    CALM = 10,         // blocks until what it stirred up has died down
+    STALLED = 450      // iterations without better edges: they cannot be right
 };
 static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 2e-3, good_error = 5e-3, balance_error = 0.03;
 static const double block_step = 1e-4;  // in lattice spacings
+static const double turn_step = 1e-5;   // the same, on the sheet's radius
+static const double widest_turn = 0.1;  // radians, at once
 static const double coarse_share = 0.3; // of the time, where a coarser sheet settles first
 static const double first_share = 0.8;  // of what is left, where a fresh sheet may have to rest twice
 static const double popped = 0.1;       // of the sheet's radius
@@ -164,6 +169,57 @@ static bool shape_sheet(ax_form* f, const ax_progress* progress, double hi)
     return going;
 }
 
+// Iterates `blocks`, and takes by how much the last of them turned the sheet. False if cancelled.
+static bool turn_of_blocks(ax_form* f, int blocks, const ax_progress* progress, double gone, double* turn)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    double(*was)[3] = ax_alloc(n, sizeof *was);
+    bool going = true;
+    for (int k = 0; k < blocks && going; ++k) {
+        memcpy(was, f->deployed, n * sizeof *was);
+        ax_form_iterate_shape(f, BLOCK);
+        f->iterations += BLOCK;
+        going = ax_progress_report(progress, shaping, gone, shape_error(f));
+    }
+    *turn = ax_measure_turn((int)n, (const double(*)[3])was, (const double(*)[3])f->deployed);
+    ax_free(was);
+    return going;
+}
+
+// A sheet turns in a rim that is nearly round, by next to no force and for thousands of iterations. Where it stops is found by secants: it is turned,
+// what that stirs up dies down, and it is seen how fast it turns there. Where it turns most slowly it stays. False if cancelled.
+static bool end_turn(ax_form* f, const ax_progress* progress, double gone)
+{
+    int n = f->lattice.linkage.hinge_count;
+    double(*from)[3] = ax_copy(f->deployed, (size_t)n, sizeof *from), *best = AX_NEW(double, shape_size(f));
+    double least = turn_step * f->lattice.spacing / f->radius, rate, angle = 0;
+    bool going = turn_of_blocks(f, 1, progress, gone, &rate);
+    double turn = ax_clamp(FIRST_TURN * rate, -widest_turn, widest_turn), slowest = fabs(rate);
+    take_shape(f, best);
+    for (int k = 0; k < TURNS && going && fabs(rate) > least; ++k) {
+        ax_measure_turned(n, (const double(*)[3])f->deployed, turn, f->deployed);
+        double now;
+        going = turn_of_blocks(f, CALM, progress, gone, &now);
+        double at = ax_measure_turn(n, (const double(*)[3])from, (const double(*)[3])f->deployed);
+        double slope = (now - rate) / (at - angle);
+        rate = now, angle = at;
+        if (fabs(now) < slowest) {
+            slowest = fabs(now);
+            take_shape(f, best);
+        }
+        if (!(slope < 0)) // nothing draws it back
+            break;
+        turn = ax_clamp(-now / slope, -widest_turn, widest_turn);
+    }
+    if (going && fabs(rate) > slowest)
+        put_shape(f, best);
+    double turned = ax_measure_turn(n, (const double(*)[3])from, (const double(*)[3])f->deployed);
+    ax_measure_turned(n, (const double(*)[3])f->simulated, turned, f->simulated);
+    ax_free(best);
+    ax_free(from);
+    return going;
+}
+
 // Near the rest and then to it. False if cancelled.
 static bool come_to_rest(ax_form* f, const ax_progress* progress, double lo, double hi, bool* balanced)
 {
@@ -240,7 +296,7 @@ static bool rest(ax_form* f, int iterations, const ax_progress* progress)
     double half = ax_form_hangs(f) ? 0.5 : 1;
     bool going;
     if (iterations == 0 && ax_form_shares(f))
-        going = shape_sheet(f, progress, half);
+        going = shape_sheet(f, progress, half) && (shape_error(f) > rest_error || end_turn(f, progress, half));
     else
         going = run(f, true, iterations > 0 ? iterations : FLAT_ITERATIONS,
                     iterations > 0 ? iterations : MOST_ITERATIONS, progress, 0, half);
