@@ -128,7 +128,7 @@ static bool is_alike(const double* const place[3], const double* const sheet[3])
 
 void ax_form_list_fitting(const ax_form* f, unsigned char* fits)
 {
-    static const double on_outline = 0.05; // spacings
+    static const double on_outline = 0.15; // spacings
     const ax_linkage* linkage = &f->lattice.linkage;
     int n = linkage->hinge_count, *rim = AX_NEW(int, n), count = ax_linkage_rim(linkage, rim);
     const double** place = AX_NEW0(const double*, n);
