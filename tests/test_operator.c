@@ -1240,15 +1240,17 @@ static double side_error(const ax_form_view* v, const double size[2])
     return most;
 }
 
-// Largest |edge / mean edge - 1| of the sheet's panels.
-static double unequal_edges(const ax_form_view* v)
+// Largest |edge / mean edge - 1| of panels whose hinges are at places of so many coordinates.
+static double unequal_edges(const ax_linkage* linkage, int dimensions, const double* places)
 {
     double most = 0;
-    for (int t = 0; t < v->linkage->triangle_count; ++t) {
-        const int* h = v->linkage->triangles[t];
+    for (int t = 0; t < linkage->triangle_count; ++t) {
         double edge[3], mean = 0;
-        for (int k = 0; k < 3; ++k)
-            mean += (edge[k] = ax_distance2(v->sheet[h[k]], v->sheet[h[(k + 1) % 3]])) / 3;
+        for (int k = 0; k < 3; ++k) {
+            const double *a = places + dimensions * linkage->triangles[t][k],
+                         *b = places + dimensions * linkage->triangles[t][(k + 1) % 3];
+            mean += (edge[k] = dimensions == 2 ? ax_distance2(a, b) : ax_distance3(a, b)) / 3;
+        }
         for (int k = 0; k < 3; ++k)
             most = fmax(most, fabs(edge[k] / mean - 1));
     }
@@ -1271,7 +1273,7 @@ static void drawn_sheets_have_their_proportions(void** state)
         int t = v.linkage->triangle_count;
         const double wanted[2] = {cases[k].width, cases[k].height};
         assert_at_most(side_error(&v, wanted), 1e-3);
-        assert_at_most(unequal_edges(&v), 0.0202);
+        assert_at_most(unequal_edges(v.linkage, 2, *v.sheet), 0.0202);
         assert_near(t * sqrt(3) / 4 * v.spacing * v.spacing, wanted[0] * wanted[1], 6.0 / t * wanted[0] * wanted[1]);
         assert_near(t, cases[k].triangles, 0.25 * cases[k].triangles);
         ax_error error = {0};
@@ -1284,7 +1286,7 @@ static void drawn_sheets_have_their_proportions(void** state)
     ax_form* form = play("{\"op\": \"start_rectangle\", \"width\": 3, \"height\": 1, \"edge\": 0.05}");
     ax_form_view v = ax_form_look(form);
     assert_near(v.spacing, 0.1, 1e-15); // who gives the edge gets it
-    assert_at_most(unequal_edges(&v), 1e-12);
+    assert_at_most(unequal_edges(v.linkage, 2, *v.sheet), 1e-12);
     ax_form_free(form);
 }
 
@@ -1301,7 +1303,7 @@ static void stretched_sheets_open_alike_in_all_directions(void** state)
         snprintf(text, sizeof text, "%s, {\"op\": \"expand\"}", starts[k]);
         ax_form* form = play(text);
         ax_form_view v = ax_form_look(form);
-        assert_true(unequal_edges(&v) > 0.004);
+        assert_true(unequal_edges(v.linkage, 2, *v.sheet) > 0.004);
         double flat[2][2] = {{0}}, open[2][2] = {{0}}; // second moments about the middle, which is at the origin
         for (int h = 0; h < v.linkage->hinge_count; ++h)
             for (int i = 0; i < 2; ++i)
@@ -1343,25 +1345,9 @@ static void a_settled_sheet_has_stopped_turning(void** state)
     v = ax_form_look(form);
     for (size_t h = 0; h < n; ++h)
         most = fmax(most, ax_distance3(was[h], v.deployed[h]));
-
-    assert_at_most(most, 0.02 * 0.65 * v.spacing);
+    assert_at_most(most, 0.02 * 0.65 * v.spacing); // of a mean edge
     ax_free(was);
     ax_form_free(form);
-}
-
-// Largest |edge / mean edge - 1| of panels of the deployed state.
-static double stretched_panels(const ax_form_view* v)
-{
-    double most = 0;
-    for (int t = 0; t < v->linkage->triangle_count; ++t) {
-        const int* h = v->linkage->triangles[t];
-        double edge[3], mean = 0;
-        for (int k = 0; k < 3; ++k)
-            mean += (edge[k] = ax_distance3(v->deployed[h[k]], v->deployed[h[(k + 1) % 3]])) / 3;
-        for (int k = 0; k < 3; ++k)
-            most = fmax(most, fabs(edge[k] / mean - 1));
-    }
-    return most;
 }
 
 // Rims are fixed as the sheet lies, its panels' turn left out: sides of a rectangle are straight, and no panel has to be stretched for them.
@@ -1384,7 +1370,7 @@ static void a_rim_fixed_on_the_sheet_leaves_its_panels_alike(void** state)
         for (int k = 0; k < i; ++k)
             assert_near(ax_distance3(part->places[i], part->places[k]),
                         growth * ax_distance2(v.sheet[part->hinges[i]], v.sheet[part->hinges[k]]), 1e-9);
-    assert_at_most(stretched_panels(&v), 0.03);
+    assert_at_most(unequal_edges(v.linkage, 3, *v.deployed), 0.03);
     ax_form_free(form);
 
     form = play(
@@ -1392,7 +1378,7 @@ static void a_rim_fixed_on_the_sheet_leaves_its_panels_alike(void** state)
         "\"rim_ellipse\", \"a\": [1.2, 0, 0], \"b\": [0, 0.9, 0]}, {\"op\": \"gravity\"}, {\"op\": \"rim_fixed\", "
         "\"at\": \"deployed\"}, {\"op\": \"rest\"}");
     v = ax_form_look(form);
-    assert_true(stretched_panels(&v) > 0.05);
+    assert_true(unequal_edges(v.linkage, 3, *v.deployed) > 0.05);
     ax_form_report report;
     ax_form_measure(form, &report);
     assert_true(report.settled);
@@ -1502,8 +1488,8 @@ static const ax_finding* find_kind(const ax_form_report* report, const char* kin
     return NULL;
 }
 
-// A sheet with far too much between two fixed sides, and free ones, folds by its panels; one whose surplus is painted has one shape. A form that is opened
-// again says the same.
+// A sheet with far too much between two fixed sides, and free ones, folds by its panels; one whose surplus is painted has one shape. A form
+// that is opened again says the same.
 static void forms_of_several_shapes_are_told(void** state)
 {
     (void)state;

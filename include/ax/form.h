@@ -194,8 +194,8 @@ typedef struct ax_form_view {
     unsigned revision;            // rises with every change
 } ax_form_view;
 ax_form_view ax_form_look(ax_form* form);
-// Where hinges of the sheet come to lie as it is turned, shifted and grown to the flat state: `count` places. The turn of a panel against the sheet, by
-// which its own hinges lie beside them, is left out: sides stay straight, and places are the same at any number of panels.
+// Where hinges of the sheet come to lie as it is turned, shifted and grown to the flat state: `count` places. The turn of a panel against the
+// sheet, by which its own hinges lie beside them, is left out: sides stay straight, and places are the same at any number of panels.
 void ax_form_flat_places(const ax_form* form, int count, const int* hinges, double (*places)[2]);
 // Measured when asked for; borrowed likewise. Per hole: area over that of the cyclic polygon of its sides, of the simulated state if
 // there is one. Per hinge: largest multiplier over L of its panels; above 2: too little material here.

@@ -5,8 +5,8 @@
 #include "ax/design.h"
 #include "mesh/closest.h"
 
-// The turn about the vertical through the middle of the first state of `count` hinges that brings it nearest to the second, and a state turned so.
-// `to` may be `from`.
+// The turn about the vertical through the middle of the first state of `count` hinges that brings it nearest to the second, and a state
+// turned so. `to` may be `from`.
 double ax_measure_turn(int count, const double (*from)[3], const double (*to)[3]);
 void ax_measure_turned(int count, const double (*from)[3], double angle, double (*to)[3]);
 

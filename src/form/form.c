@@ -107,7 +107,8 @@ static int* list_directions(const ax_form* f)
 
 // Every second one of seven hinges on kagome lines. In fine sheets some of these rows stand for all, as far apart as all are in one of
 // 600 panels: those on every second, third ... line, and of the two kinds of hinges that take turns on it those of one, in turn from line to
-// line: mirror images of the sheet stay alike. Folds are wider than that, and a row that spans six panels is dear: at 2,000 panels a fifth of the work of a factorisation is left.
+// line: mirror images of the sheet stay alike. Folds are wider than that, and a row that spans six panels is dear: at 2,000 panels a fifth
+// of the work of a factorisation is left.
 static void list_wide(ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;

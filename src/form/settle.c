@@ -30,7 +30,7 @@ static const double turn_step = 1e-5;   // the same, on the sheet's radius
 static const double widest_turn = 0.1;  // radians, at once
 static const double coarse_share = 0.3; // of the time, where a coarser sheet settles first
 static const double first_share = 0.8;  // of what is left, where a fresh sheet may have to rest twice
-static const double popped = 0.1;       // of the sheet's radius
+static const double popped = 0.1;       // of the sheet's radius, moved under load
 static const double astray = 4;         // steps so many times longer after a jump than before it: it is taken back
 static const char shaping[] = "Shaping the sheet", loading[] = "Loading the sheet";
 
@@ -186,8 +186,9 @@ static bool turn_of_blocks(ax_form* f, int blocks, const ax_progress* progress, 
     return going;
 }
 
-// A sheet turns in a rim that is nearly round, by next to no force and for thousands of iterations. Where it stops is found by secants: it is turned,
-// what that stirs up dies down, and it is seen how fast it turns there. Where it turns most slowly it stays. False if cancelled.
+// A sheet turns in a rim that is nearly round, by next to no force and for thousands of iterations. Where it stops is found by secants: it is
+// turned, what that stirs up dies down, and it is seen how fast it turns there. Where it turns most slowly it stays, and what is under load
+// turns with it. False if cancelled.
 static bool end_turn(ax_form* f, const ax_progress* progress, double gone)
 {
     int n = f->lattice.linkage.hinge_count;
@@ -213,8 +214,10 @@ static bool end_turn(ax_form* f, const ax_progress* progress, double gone)
     }
     if (going && fabs(rate) > slowest)
         put_shape(f, best);
-    double turned = ax_measure_turn(n, (const double(*)[3])from, (const double(*)[3])f->deployed);
-    ax_measure_turned(n, (const double(*)[3])f->simulated, turned, f->simulated);
+    if (angle != 0) {
+        double turned = ax_measure_turn(n, (const double(*)[3])from, (const double(*)[3])f->deployed);
+        ax_measure_turned(n, (const double(*)[3])f->simulated, turned, f->simulated);
+    }
     ax_free(best);
     ax_free(from);
     return going;

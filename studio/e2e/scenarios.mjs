@@ -517,8 +517,10 @@ export const scenarios = {
             assert.ok(way.heights[0] < 0.02 * way.heights.at(-1), `from ${way.heights[0]} to ${way.heights.at(-1)} high`);
             assert.ok(way.heights.length > 30 && way.heights.every((h, k) => k === 0 || Math.abs(h - way.heights[k - 1]) < 0.1 * way.heights.at(-1)), `it does not jump: ${way.heights}`);
             assert.ok(Math.abs(way.shares.at(-1) - 1) < 1e-6);
-            const edge = 0.3; // of eleven metres: what is slack lies as it came
-            assert.ok(Math.max(...way.last.map((v, k) => Math.abs(v - rest[k]))) < edge, "it ends where the document is");
+            // what overhangs the rim, six hinges of 2,300, lies inwards or outwards with equal ease
+            const apart = way.last.map((v, k) => Math.abs(v - rest[k])).sort((a, b) => a - b), edge = 0.2;
+            assert.ok(apart[Math.floor(0.99 * apart.length)] < edge / 2, "it ends where the document is");
+            assert.ok(apart.at(-1) < 1.5 * edge);
             await hand.key("Home");
             await hand.key(",");
             await page.getByText(/State \d+ of \d+/).waitFor();
