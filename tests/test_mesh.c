@@ -277,6 +277,70 @@ static void check_closest(const ax_mesh* mesh, int queries, double reach)
     ax_closest_free(closest);
 }
 
+// Against points of the triangle so dense that none of it is further than `spacing` from one.
+static void check_closest_to_triangle(const ax_mesh* mesh, int queries, double reach, int* crossings)
+{
+    enum { PARTS = 48 };
+    ax_closest* closest = ax_closest_make(mesh);
+    ax_random random = {11};
+    for (int q = 0; q < queries; ++q) {
+        double corners[3][3], expected = INFINITY, spacing = 0;
+        const double* about = mesh->positions[(int)ax_random_uniform(&random, 0, mesh->vertex_count - 1)];
+        double away = ax_random_uniform(&random, 0, reach);
+        for (int d = 0; d < 3; ++d)
+            for (int k = 0; k < 3; ++k)
+                corners[k][d] = about[d] + (d == 2 ? away : 0) + ax_random_uniform(&random, -0.2, 0.2);
+        for (int k = 0; k < 3; ++k)
+            spacing = fmax(spacing, ax_distance3(corners[k], corners[(k + 1) % 3]) / PARTS);
+        for (int i = 0; i <= PARTS; ++i)
+            for (int j = 0; i + j <= PARTS; ++j) {
+                double x[3], u = (double)i / PARTS, v = (double)j / PARTS;
+                for (int d = 0; d < 3; ++d)
+                    x[d] = corners[0][d] + u * (corners[1][d] - corners[0][d]) + v * (corners[2][d] - corners[0][d]);
+                expected = fmin(expected, ax_closest_find(closest, x, -1).distance);
+            }
+        double found = ax_closest_to_triangle(closest, (const double(*)[3])corners, INFINITY);
+        assert_at_most(found, expected * (1 + 1e-12));
+        assert_at_most(expected - spacing, found);
+        *crossings += found == 0;
+        assert_near(ax_closest_to_triangle(closest, (const double(*)[3])corners, 0.5 * found), 0.5 * found, 0);
+        assert_near(ax_closest_to_triangle(closest, (const double(*)[3])corners, found + 1), found, 1e-12);
+    }
+    ax_closest_free(closest);
+}
+
+static void distances_of_triangles_agree_with_those_of_their_points(void** state)
+{
+    (void)state;
+    int crossings = 0;
+    ax_mesh meshes[] = {shape_cap(12, AX_PI / 2), shape_over_disk(9, saddle), fan(3), shape_over_disk(1, flat)};
+    for (size_t m = 0; m < sizeof meshes / sizeof *meshes; ++m) {
+        check_closest_to_triangle(&meshes[m], 40, 0, &crossings);
+        check_closest_to_triangle(&meshes[m], 40, 1, &crossings);
+        ax_mesh_free(&meshes[m]);
+    }
+    assert_in_range(crossings, 40, 280);
+}
+
+// Two edges pass each other, an edge goes through a face between its corners, and faces lie one above the other.
+static void distances_of_triangles_are_exact(void** state)
+{
+    (void)state;
+    double positions[3][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -2, 0}};
+    int faces[1][3] = {{0, 1, 2}};
+    ax_mesh mesh = {.vertex_count = 3, .face_count = 1, .positions = positions, .faces = faces};
+    ax_closest* closest = ax_closest_make(&mesh);
+    const double beside[3][3] = {{0, 1, -1}, {0, 1, 1}, {0, 3, 0}},
+                 over[3][3] = {{0, 0.5, 0.5}, {0, -0.5, 0.5}, {0, 0, 3}};
+    const double through[3][3] = {{0, -0.5, -1}, {0, -0.5, 1}, {0, -9, 1}};
+    const double above[3][3] = {{-9, 9, 0.25}, {9, 9, 0.25}, {0, -20, 0.25}};
+    assert_near(ax_closest_to_triangle(closest, beside, INFINITY), 1, 1e-15);
+    assert_near(ax_closest_to_triangle(closest, over, INFINITY), 0.5, 1e-15);
+    assert_near(ax_closest_to_triangle(closest, through, INFINITY), 0, 0);
+    assert_near(ax_closest_to_triangle(closest, above, INFINITY), 0.25, 1e-15);
+    ax_closest_free(closest);
+}
+
 static void closest_points_agree_with_brute_force(void** state)
 {
     (void)state;
@@ -475,6 +539,8 @@ int main(void)
         cmocka_unit_test(mean_curvature_of_a_sphere_is_one_over_its_radius),
         cmocka_unit_test(normals_of_a_sphere_point_outward),
         cmocka_unit_test(closest_points_agree_with_brute_force),
+        cmocka_unit_test(distances_of_triangles_agree_with_those_of_their_points),
+        cmocka_unit_test(distances_of_triangles_are_exact),
         cmocka_unit_test(a_mesh_is_a_place_for_constraints),
         cmocka_unit_test(ties_go_to_the_lowest_face),
         cmocka_unit_test(a_million_faces_are_searchable_in_seconds),

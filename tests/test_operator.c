@@ -1099,7 +1099,22 @@ static void clearance_is_measured_to_whole_panels(void** state)
         int face[1][3] = {{0, 1, 2}};
         const ax_mesh mesh = {.vertex_count = 3, .face_count = 1, .positions = spike, .faces = face};
         ax_form_put_underlay(form, "spike", &mesh, 0.4 * edge);
-        assert_near(distance_told(form), pierces ? 0 : 0.3 * edge, 2e-3 * edge);
+        assert_near(distance_told(form), pierces ? 0 : 0.3 * edge, 1e-12 * edge);
+    }
+    ax_form_free(form);
+}
+
+// All panels of a sheet are as far from a floor under it; it may be as large as a landscape.
+static void clearance_to_a_parallel_floor_is_exact(void** state)
+{
+    (void)state;
+    ax_form* form = play(CIRCLE);
+    for (double size = 10; size < 1e10; size *= 1e4) {
+        double floor[3][3] = {{-size, -size, -3}, {size, -size, -3}, {0, size, -3}};
+        int face[1][3] = {{0, 1, 2}};
+        const ax_mesh mesh = {.vertex_count = 3, .face_count = 1, .positions = floor, .faces = face};
+        ax_form_put_underlay(form, "floor", &mesh, 3.5);
+        assert_near(distance_told(form), 3, 1e-12);
     }
     ax_form_free(form);
 }
@@ -1590,6 +1605,7 @@ int main(void)
         cmocka_unit_test(control_points_are_moved_added_and_removed),
         cmocka_unit_test(a_draped_sheet_hangs_exactly_round_a_notch),
         cmocka_unit_test(clearance_is_measured_to_whole_panels),
+        cmocka_unit_test(clearance_to_a_parallel_floor_is_exact),
         cmocka_unit_test(the_same_recipe_gives_the_same_bits),
         cmocka_unit_test(a_cancelled_operator_leaves_the_form_as_it_was),
         cmocka_unit_test(playing_stops_where_it_is_told),

@@ -36,51 +36,19 @@ static int by_severity(const ax_finding* x, const ax_finding* y)
     return x->severity != y->severity ? (int)y->severity - (int)x->severity : strcmp(x->kind, y->kind);
 }
 
-// Distance of the part of a panel that comes nearest to a surface, if it is below *least. No part of a triangle is further from its
-// centroid than the furthest corner, so parts that cannot come nearer are left out and the rest is quartered.
-static void nearest_part(const ax_closest* tree, const double corner[3][3], double tolerance, int face, double* least)
-{
-    double centre[3], reach = 0;
-    for (int c = 0; c < 3; ++c)
-        centre[c] = (corner[0][c] + corner[1][c] + corner[2][c]) / 3;
-    for (int k = 0; k < 3; ++k)
-        reach = fmax(reach, ax_distance3(centre, corner[k]));
-    ax_closest_point on = ax_closest_find(tree, centre, face);
-    *least = fmin(*least, on.distance);
-    if (reach < tolerance || on.distance - reach > *least - tolerance)
-        return;
-    double middle[3][3];
-    for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c)
-            middle[k][c] = 0.5 * (corner[(k + 1) % 3][c] + corner[(k + 2) % 3][c]);
-    nearest_part(tree, (const double(*)[3])middle, tolerance, on.face, least);
-    for (int k = 0; k < 3; ++k) {
-        double part[3][3];
-        memcpy(part[0], corner[k], sizeof part[0]);
-        memcpy(part[1], middle[(k + 2) % 3], sizeof part[1]);
-        memcpy(part[2], middle[(k + 1) % 3], sizeof part[2]);
-        nearest_part(tree, (const double(*)[3])part, tolerance, on.face, least);
-    }
-}
-
-static double underlay_tolerance(const ax_form* f)
-{
-    return 1e-3 * ax_form_sides_mean(f);
-}
-
-// Least distance of the panels from an underlay, up to the tolerance, and the panel.
+// Least distance of the panels from an underlay, and the panel.
 static double underlay_distance(const ax_form* f, int k, int* panel)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
     const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
-    double tolerance = underlay_tolerance(f), least = INFINITY;
+    double least = INFINITY;
     ax_closest* tree = ax_closest_make(f->underlays + k);
     *panel = -1;
     for (int t = 0; t < linkage->triangle_count; ++t) {
         double corner[3][3], before = least;
         for (int c = 0; c < 3; ++c)
             memcpy(corner[c], x[linkage->triangles[t][c]], sizeof corner[c]);
-        nearest_part(tree, (const double(*)[3])corner, tolerance, -1, &least);
+        least = ax_closest_to_triangle(tree, (const double(*)[3])corner, least);
         *panel = least < before ? t : *panel;
     }
     ax_closest_free(tree);
@@ -385,7 +353,7 @@ void ax_form_find_problems(ax_form* f, ax_form_report* r)
         if (least >= f->clearances[k])
             continue;
         char how[48];
-        bool touches = least <= underlay_tolerance(f);
+        bool touches = least <= 1e-3 * ax_form_sides_mean(f);
         snprintf(how, sizeof how, touches ? "runs into" : "comes within %.3g %s of", least, unit);
         tell(r, AX_SEVERITY_FAILURE, "clearance", touches ? 0 : least, f->clearances[k],
              "The shell %s '%s' at %s; a clearance of %.3g %s is asked.", how, f->underlay_names[k],

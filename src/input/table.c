@@ -369,7 +369,7 @@ static void apply_scattered(const ax_table* table, const ax_linkage* linkage, co
             for (int d = 0; d < 2; ++d)
                 x[d] += sheet[linkage->triangles[t][corner]][d] / 3;
         nearest n = {.table = table, .tree = &tree, .x = x, .limit = INFINITY};
-        ax_box_tree_nearest(&tree, x, &n.limit, offer, &n);
+        ax_box_tree_nearest(&tree, x, x, &n.limit, offer, &n);
         scale[t] = fit(&n);
     }
     ax_box_tree_free(&tree);

@@ -29,11 +29,11 @@ void ax_box_tree_free(ax_box_tree* tree);
 
 enum { ax_box_tree_depth = 64 }; // no path has more nodes
 
-static inline double ax_box_distance_squared(const ax_box_node* node, int side, const double x[3])
+static inline double ax_box_distance_squared(const ax_box_node* node, int side, const double lo[3], const double hi[3])
 {
     double sum = 0;
     for (int d = 0; d < 3; ++d) {
-        double below = node->lo[side][d] - x[d], above = x[d] - node->hi[side][d];
+        double below = node->lo[side][d] - hi[d], above = lo[d] - node->hi[side][d];
         double outside = below > above ? below : above;
         outside = outside > 0 ? outside : 0;
         sum += outside * outside;
@@ -41,10 +41,11 @@ static inline double ax_box_distance_squared(const ax_box_node* node, int side, 
     return sum;
 }
 
-// Calls visit(context, place) for the place in `order` of every item whose box may lie within *limit (a squared
-// distance, which `visit` may lower) of x, nearest boxes first. Inlined so that the calls are direct.
-static inline __attribute__((always_inline)) void ax_box_tree_nearest(const ax_box_tree* tree, const double x[3],
-                                                                      const double* limit,
+// Calls visit(context, place) for the place in `order` of every item whose box may lie within *limit (a squared distance, which
+// `visit` may lower) of the box from lo to hi, or the point if they are the same; nearest boxes first. Inlined so that the calls
+// are direct.
+static inline __attribute__((always_inline)) void ax_box_tree_nearest(const ax_box_tree* tree, const double lo[3],
+                                                                      const double hi[3], const double* limit,
                                                                       void (*visit)(void* context, int place),
                                                                       void* context)
 {
@@ -52,8 +53,9 @@ static inline __attribute__((always_inline)) void ax_box_tree_nearest(const ax_b
         ax_box_link link;
         double distance;
     } stack[ax_box_tree_depth];
-    double local[3];
-    ax_sub3(x, tree->centre, local);
+    double from[3], to[3];
+    ax_sub3(lo, tree->centre, from);
+    ax_sub3(hi, tree->centre, to);
     int depth = 0;
     ax_box_link at = tree->root;
     for (;;) {
@@ -62,7 +64,8 @@ static inline __attribute__((always_inline)) void ax_box_tree_nearest(const ax_b
                 visit(context, at.first + i);
         } else {
             const ax_box_node* node = tree->nodes + at.first;
-            double distance[2] = {ax_box_distance_squared(node, 0, local), ax_box_distance_squared(node, 1, local)};
+            double distance[2] = {ax_box_distance_squared(node, 0, from, to),
+                                  ax_box_distance_squared(node, 1, from, to)};
             int near = distance[1] < distance[0];
             if (distance[near] <= *limit) {
                 if (distance[!near] <= *limit) {

@@ -132,7 +132,7 @@ ax_closest_point ax_closest_find(const ax_closest* closest, const double x[3], i
                 corners[k][d] = mesh->positions[mesh->faces[hint][k]][d];
         try_triangle(&s, hint, corners);
     }
-    ax_box_tree_nearest(&closest->tree, x, &s.squared, try_place, &s);
+    ax_box_tree_nearest(&closest->tree, x, x, &s.squared, try_place, &s);
     assert(s.face < mesh->face_count && "x must be finite");
 
     ax_closest_point result = {.face = s.face, .distance = sqrt(s.squared)};
@@ -149,6 +149,94 @@ ax_closest_point ax_closest_find(const ax_closest* closest, const double x[3], i
     else
         ax_face_normal(mesh, s.face, result.normal);
     return result;
+}
+
+// Squared distance of the segments a b and c d (Ericson 2005, section 5.1.9).
+static double segments_squared(const double a[3], const double b[3], const double c[3], const double d[3])
+{
+    double u[3], v[3], w[3];
+    ax_sub3(b, a, u);
+    ax_sub3(d, c, v);
+    ax_sub3(a, c, w);
+    double uu = ax_dot3(u, u), vv = ax_dot3(v, v), uv = ax_dot3(u, v), uw = ax_dot3(u, w), vw = ax_dot3(v, w);
+    double area = uu * vv - uv * uv, s = area > 0 ? ax_clamp((uv * vw - uw * vv) / area, 0, 1) : 0;
+    double t = vv > 0 ? ax_clamp((uv * s + vw) / vv, 0, 1) : 0;
+    s = uu > 0 ? ax_clamp((uv * t - uw) / uu, 0, 1) : 0;
+    double between[3];
+    for (int e = 0; e < 3; ++e)
+        between[e] = w[e] + s * u[e] - t * v[e];
+    return ax_dot3(between, between);
+}
+
+// Whether the segment a b goes through the triangle: its ends lie on two sides, and its line passes all edges on the same.
+static bool goes_through(const double a[3], const double b[3], const double corners[3][3])
+{
+    double along[3], volume[3], side[2];
+    const double* ends[2] = {a, b};
+    ax_sub3(b, a, along);
+    for (int k = 0; k < 3; ++k) {
+        double edge[3], to[3], across[3];
+        ax_sub3(corners[(k + 1) % 3], corners[k], edge);
+        ax_sub3(a, corners[k], to);
+        ax_cross(edge, to, across);
+        volume[k] = ax_dot3(across, along);
+    }
+    double edge[2][3], normal[3];
+    for (int k = 0; k < 2; ++k)
+        ax_sub3(corners[k + 1], corners[0], edge[k]);
+    ax_cross(edge[0], edge[1], normal);
+    for (int k = 0; k < 2; ++k) {
+        double to[3];
+        ax_sub3(ends[k], corners[0], to);
+        side[k] = ax_dot3(to, normal);
+    }
+    return side[0] * side[1] < 0 && volume[0] * volume[1] > 0 && volume[1] * volume[2] > 0;
+}
+
+// Two triangles are nearest at a corner of one, between two edges, or where an edge goes through the other.
+static double triangles_squared(const double one[3][3], const double other[3][3])
+{
+    double least = INFINITY;
+    const double(*pair[2])[3] = {one, other};
+    for (int p = 0; p < 2; ++p)
+        for (int k = 0; k < 3; ++k) {
+            const double(*of)[3] = pair[p], (*to)[3] = pair[!p];
+            double weight[3], away[3];
+            if (goes_through(of[k], of[(k + 1) % 3], to))
+                return 0;
+            closest_weights(of[k], to[0], to[1], to[2], weight);
+            for (int e = 0; e < 3; ++e)
+                away[e] = of[k][e] - (weight[0] * to[0][e] + weight[1] * to[1][e] + weight[2] * to[2][e]);
+            least = fmin(least, ax_dot3(away, away));
+        }
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            least = fmin(least, segments_squared(one[i], one[(i + 1) % 3], other[k], other[(k + 1) % 3]));
+    return least;
+}
+
+typedef struct triangle_search {
+    const ax_closest* closest;
+    const double (*corners)[3];
+    double squared;
+} triangle_search;
+
+static void try_pair(void* context, int place)
+{
+    triangle_search* s = context;
+    s->squared = fmin(s->squared, triangles_squared(s->corners, (const double(*)[3])s->closest->corners[place]));
+}
+
+double ax_closest_to_triangle(const ax_closest* closest, const double corners[3][3], double limit)
+{
+    triangle_search s = {closest, corners, limit * limit};
+    double lo[3], hi[3];
+    for (int e = 0; e < 3; ++e) {
+        lo[e] = fmin(corners[0][e], fmin(corners[1][e], corners[2][e]));
+        hi[e] = fmax(corners[0][e], fmax(corners[1][e], corners[2][e]));
+    }
+    ax_box_tree_nearest(&closest->tree, lo, hi, &s.squared, try_pair, &s);
+    return s.squared < limit * limit ? sqrt(s.squared) : limit;
 }
 
 static void nearest(const void* geometry, const double x[3], double out[3])

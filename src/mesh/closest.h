@@ -22,6 +22,10 @@ typedef struct ax_closest_point {
 // The closest point of the surface to x; `hint` is a face to start from (the previous answer) or -1. Thread safe.
 ax_closest_point ax_closest_find(const ax_closest* tree, const double x[3], int hint);
 
+// Distance between the surface and a triangle, 0 where they cross, if it is below `limit`, which may be infinite; else `limit`.
+// Thread safe.
+double ax_closest_to_triangle(const ax_closest* tree, const double corners[3][3], double limit);
+
 // The surface as a place for constraints that keep points on it, borrowed.
 ax_place ax_closest_place(const ax_closest* tree);
 

@@ -97,7 +97,7 @@ static void try_segment(void* context, int place)
 ax_polyline_point ax_polyline_find(const ax_polyline* line, const double x[3])
 {
     search s = {.line = line, .x = x, .squared = INFINITY, .segment = line->count};
-    ax_box_tree_nearest(&line->tree, x, &s.squared, try_segment, &s);
+    ax_box_tree_nearest(&line->tree, x, x, &s.squared, try_segment, &s);
     assert(s.segment < line->count && "x must be finite");
 
     ax_polyline_point result = {.segment = s.segment, .parameter = s.parameter, .distance = sqrt(s.squared)};
