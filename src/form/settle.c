@@ -20,13 +20,15 @@ enum {
     BLOCKS = 5, // until only slow modes are left
     STATES = 5,
     TURNS = 4,         // of a sheet in its rim, at most
-    FIRST_TURN = 3000, // blocks of iterations that it stands for
-    CALM = 10,         // blocks until what it stirred up has died down
+    FIRST_TURN = 2500, // blocks of iterations that it stands for
+    CALM = 6,          // blocks until what it stirred up has died down
+    LAST_CALM = 4,     // the same, of the last turn, which is small
     STALLED = 450      // iterations without better edges: they cannot be right
 };
 static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 2e-3, good_error = 5e-3, balance_error = 0.03;
 static const double block_step = 1e-4;  // in lattice spacings
 static const double turn_step = 1e-5;   // the same, on the sheet's radius
+static const double calm_step = 2e-6;   // too slow to matter, and as slow as the rest comes to rest
 static const double widest_turn = 0.1;  // radians, at once
 static const double coarse_share = 0.3; // of the time, where a coarser sheet settles first
 static const double first_share = 0.8;  // of what is left, where a fresh sheet may have to rest twice
@@ -193,11 +195,11 @@ static bool end_turn(ax_form* f, const ax_progress* progress, double gone)
 {
     int n = f->lattice.linkage.hinge_count;
     double(*from)[3] = ax_copy(f->deployed, (size_t)n, sizeof *from), *best = AX_NEW(double, shape_size(f));
-    double least = turn_step * f->lattice.spacing / f->radius, rate, angle = 0;
-    bool going = turn_of_blocks(f, 1, progress, gone, &rate);
+    double size = f->lattice.spacing / f->radius, rate, angle = 0;
+    bool going = turn_of_blocks(f, 1, progress, gone, &rate), drawn = true;
     double turn = ax_clamp(FIRST_TURN * rate, -widest_turn, widest_turn), slowest = fabs(rate);
     take_shape(f, best);
-    for (int k = 0; k < TURNS && going && fabs(rate) > least; ++k) {
+    for (int k = 0; k < TURNS && going && drawn && fabs(rate) > turn_step * size; ++k) {
         ax_measure_turned(n, (const double(*)[3])f->deployed, turn, f->deployed);
         double now;
         going = turn_of_blocks(f, CALM, progress, gone, &now);
@@ -208,12 +210,16 @@ static bool end_turn(ax_form* f, const ax_progress* progress, double gone)
             slowest = fabs(now);
             take_shape(f, best);
         }
-        if (!(slope < 0)) // nothing draws it back
-            break;
-        turn = ax_clamp(-now / slope, -widest_turn, widest_turn);
+        drawn = slope < 0; // back to where it stops
+        turn = drawn ? ax_clamp(-now / slope, -widest_turn, widest_turn) : 0;
     }
-    if (going && fabs(rate) > slowest)
+    if (going && fabs(rate) > slowest) {
         put_shape(f, best);
+    } else if (going && drawn && fabs(rate) <= turn_step * size && fabs(rate) > calm_step * size) {
+        ax_measure_turned(n, (const double(*)[3])f->deployed, turn, f->deployed);
+        going = turn_of_blocks(f, LAST_CALM, progress, gone, &rate);
+        angle += turn;
+    }
     if (angle != 0) {
         double turned = ax_measure_turn(n, (const double(*)[3])from, (const double(*)[3])f->deployed);
         ax_measure_turned(n, (const double(*)[3])f->simulated, turned, f->simulated);
