@@ -348,12 +348,12 @@ def add_figure(place, facing, stride, height, material):
     return item
 
 
-def add_people(count, points, ground, eye, material):
-    """Figures under the shell where it leaves them room, and before it."""
+def add_people(count, points, ground, azimuth, material):
+    """Figures under the shell where it leaves them room, and before it. Returns where their feet and heads are."""
     chance = random.Random(4)
     low, high = (Vector([least(p[k] for p in points) for k in range(3)]) for least in (min, max))
     centre, reach = (low + high) / 2, (high - low).xy.length / 2
-    toward = (eye - centre).xy.normalized().to_3d()
+    toward = direction(azimuth, 0)
     across = Vector((-toward.y, toward.x, 0))
     taken = []
     while len(taken) < count and chance.random() > 1e-3:
@@ -368,6 +368,7 @@ def add_people(count, points, ground, eye, material):
         taken.append(place)
         add_figure(place - Vector((0, 0, 0.03)), chance.uniform(0, 2 * math.pi), chance.uniform(0.1, 0.9), chance.uniform(1.6, 1.82),
                    material)
+    return [place + Vector((0, 0, height)) for place in taken for height in (0, 1.82)]
 
 
 # ---------------------------------------------------------------- light, camera, picture
@@ -421,7 +422,6 @@ def add_camera(points, options):
     item.location = right * (east - west) / 2 + up * (north - south) / 2 + back * depth
     item.rotation_euler = turn.to_euler()
     camera.clip_end = 1000 + 100 * depth
-    return item.location
 
 
 def compose(scene):
@@ -472,11 +472,15 @@ def main():
             item.scale = [shells[0].metres] * 3
             item.data.materials.clear()
             item.data.materials.append(plain("reference", (0.62, 0.61, 0.59), 0.8))
-    seen = points + [Vector((p.x, p.y, ground)) for p in points] if options.lift else points
-    eye = add_camera(seen, options)
-    add_people(options.people, points, ground, eye, plain("figure", (0.16, 0.165, 0.18), 0.65))
+    sun = [float(v) for v in options.sun.split(",")]
+    ray = direction(*sun)
+    feet = [Vector((p.x, p.y, ground)) for p in points] if options.lift else []
+    on_ground = options.lift and not options.reference  # within walls it falls on them
+    shadow = [p - ray * ((p.z - ground) / ray.z) for p in points] if on_ground else []
+    people = add_people(options.people, points, ground, options.azimuth, plain("figure", (0.16, 0.165, 0.18), 0.65))
+    add_camera(points + feet + shadow + people, options)
     add_ground(ground, 60 * (high - low).length)
-    add_light([float(v) for v in options.sun.split(",")])
+    add_light(sun)
 
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
