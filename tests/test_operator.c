@@ -796,18 +796,14 @@ static void selections_choose_what_they_say(void** state)
         snprintf(words, sizeof words, "rim:side%d", corners);
         assert_true(count_of(form, words) > 10);
         ax_form_view view = ax_form_look(form);
-        // each where it was drawn, whichever is counted first; a heptagon's are told from the lattice's steps at some sizes only
-        for (int k = 0; k < corners && corners != 7; ++k) {
-            double at[2] = {cos(2 * AX_PI * k / corners), sin(2 * AX_PI * k / corners)}, nearest = INFINITY;
-            for (int other = 1; other <= corners; ++other) {
-                snprintf(words, sizeof words, "rim:corner%d", other);
-                int *found, many;
-                assert_int_equal(ax_select(form, words, &found, &many, NULL), AX_OK);
-                assert_true(many == 1 || many == 2);
-                nearest = fmin(nearest, ax_distance2(view.sheet[found[0]], at));
-                ax_free(found);
-            }
-            assert_at_most(nearest, 1.3 * view.spacing);
+        for (int k = 0; k < corners; ++k) { // counted from the right
+            double at[2] = {cos(2 * AX_PI * k / corners), sin(2 * AX_PI * k / corners)};
+            snprintf(words, sizeof words, "rim:corner%d", k + 1);
+            int *found, many;
+            assert_int_equal(ax_select(form, words, &found, &many, NULL), AX_OK);
+            assert_true(many == 1 || many == 2);
+            assert_at_most(ax_distance2(view.sheet[found[0]], at), 1.3 * view.spacing);
+            ax_free(found);
         }
         assert_true(count_of(form, "rim:corner1(0.3)") > count_of(form, "rim:corner1(0.1)"));
         ax_form_free(form);
@@ -824,6 +820,68 @@ static void selections_choose_what_they_say(void** state)
         assert_non_null(strstr(error.message, "rim:near(1,0,0.2)"));
         ax_form_free(form);
     }
+}
+
+static int corners_of(const char* start, double at[16][2])
+{
+    ax_form* form = play(start);
+    ax_form_view view = ax_form_look(form);
+    ax_hinges rim = ax_hinges_make(view.linkage);
+    ax_corner corners[AX_CORNERS_MOST];
+    ax_select_rim(&view, &rim);
+    int n = ax_select_corners(&view, rim.count, rim.hinges, corners);
+    for (int k = 0; k < n; ++k) {
+        memcpy(at[k], corners[k].at, sizeof *at);
+        assert_at_most(ax_distance2(view.sheet[rim.hinges[corners[k].place]], at[k]), 1.5 * view.spacing);
+    }
+    ax_hinges_free(&rim);
+    ax_form_free(form);
+    return n;
+}
+
+// Sides and corners are the outline's, whatever rows and panels make of them; rounded ones too, but not the ends of an ellipse.
+static void corners_are_those_of_the_outline(void** state)
+{
+    (void)state;
+    static const struct {
+        const char* start;
+        int count;
+        double first[2];
+    } cases[] = {
+        {"\"start_rectangle\", \"width\": 5, \"height\": 3", 4, {2.5, 1.5}},
+        {"\"start_rectangle\", \"width\": 5, \"height\": 3, \"fillet\": 0.4", 4, {2.3828, 1.3828}},
+        {"\"start_rectangle\", \"width\": 6, \"height\": 0.5", 4, {3, 0.25}},
+        {"\"start_polygon\", \"radius\": 1, \"sides\": 7", 7, {1, 0}},
+        {"\"start_polygon\", \"radius\": 1, \"sides\": 12", 12, {1, 0}},
+        {"\"start_outline\", \"points\": [[2, -1], [2, 1], [1, 1], [1, -0.2], [0, -0.2], [0, 1], [-2, 1], [-2, -1]]",
+         8,
+         {2, 1}},
+        {"\"start_outline\", \"points\": [[-2, -1], [-2, 1], [0, 1], [0, -0.2], [1, -0.2], [1, 1], [2, 1], [2, -1]]",
+         8,
+         {2, 1}},
+        {"\"start_circle\", \"radius\": 1", 0, {0}},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k)
+        for (int angle = 0; angle <= 30; angle += 10)
+            for (int triangles = 300; triangles <= 2500; triangles *= 2) {
+                char start[256];
+                double at[16][2];
+                snprintf(start, sizeof start, "{\"op\": %s, \"triangles\": %d, \"angle\": %d}", cases[k].start,
+                         triangles, angle);
+                assert_int_equal(corners_of(start, at), cases[k].count);
+                if (cases[k].count)
+                    assert_at_most(ax_distance2(at[0], cases[k].first), 1e-3);
+            }
+    // the ends of an ellipse of 3 by 1 bend as sharply as a rounded corner
+    char start[4096] = "{\"op\": \"start_outline\", \"triangles\": 600, \"points\": [";
+    double at[16][2];
+    for (int k = 0; k < 60; ++k) {
+        size_t used = strlen(start);
+        snprintf(start + used, sizeof start - used, "%s[%.4f, %.4f]", k ? ", " : "", 3 * cos(k * AX_PI / 30),
+                 sin(k * AX_PI / 30));
+    }
+    strcat(start, "]}");
+    assert_int_equal(corners_of(start, at), 0);
 }
 
 static void lines_run_straight_and_curves_lead_from_hinge_to_hinge(void** state)
@@ -1595,6 +1653,7 @@ int main(void)
         cmocka_unit_test(designs_start_from_outlines_and_surfaces),
         cmocka_unit_test(a_design_for_a_surface_is_watched_while_it_is_solved),
         cmocka_unit_test(selections_choose_what_they_say),
+        cmocka_unit_test(corners_are_those_of_the_outline),
         cmocka_unit_test(lines_run_straight_and_curves_lead_from_hinge_to_hinge),
         cmocka_unit_test(curves_between_points_do_not_depend_on_resolution),
         cmocka_unit_test(selections_that_cannot_be_read_are_refused),

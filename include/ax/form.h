@@ -186,6 +186,8 @@ typedef struct ax_form_view {
     ax_unit unit;
     double spacing;               // of the undeformed lattice; a panel of scale lambda has edges lambda spacing / 2
     const double (*sheet)[2];     // hinges of the undeformed lattice
+    int outline_count;            // points of the outline that it was laid over; 0: over none
+    const double (*outline)[2];
     const double* prescribed;     // per triangle
     const double* realised;       // scale factors measured on the present flat state
     const double (*flat)[2];      // hinge places

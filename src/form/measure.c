@@ -67,6 +67,8 @@ ax_form_view ax_form_look(ax_form* f)
                           .unit = f->unit,
                           .spacing = f->lattice.spacing,
                           .sheet = (const double(*)[2])f->lattice.hinges,
+                          .outline_count = f->outline_count,
+                          .outline = (const double(*)[2])f->outline,
                           .prescribed = f->prescribed,
                           .realised = f->realised,
                           .flat = (const double(*)[2])f->flat,

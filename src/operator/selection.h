@@ -28,17 +28,19 @@ void ax_select_box(const ax_form_view* view, const double lo[2], const double hi
 void ax_select_near(const ax_form_view* view, int count, const double (*points)[2], bool closed, double distance,
                     ax_hinges* set);
 
-// Places in `rim` (an order from ax_select_rim) at which the rim turns a corner, in order; *corners owned by the caller. 0 if the
-// rim is round or has more than AX_CORNERS_MOST.
+// Corners of the outline that the sheet was laid over, or of the rim if it was over none: in the rim's order, counter-clockwise from the one at
+// the smallest angle from 0 about the sheet's middle. The same at every number of panels and angle of the lattice. `rim` is in the order of
+// ax_select_rim. Their number; 0 if there are fewer than two, more than AX_CORNERS_MOST, or fewer hinges than they need.
 enum { AX_CORNERS_MOST = 12 };
-int ax_select_corners(const ax_form_view* view, int count, const int* rim, int** corners);
+typedef struct ax_corner {
+    int place;    // in `rim`, of the nearest hinge
+    double at[2]; // on the sheet; of a rounded corner the middle of its arc
+} ax_corner;
+int ax_select_corners(const ax_form_view* view, int count, const int* rim, ax_corner corners[AX_CORNERS_MOST]);
 
 // Of these hinges those within a distance of a point of the sheet, in their order; of none the nearest, with all that are as near.
 void ax_select_nearest(const ax_form_view* view, const ax_hinges* among, const double at[2], double distance,
                        ax_hinges* set);
-// Where the sides that meet at corner k, of those in ax_select_corners, would meet as straight lines; the hinge there if they are not.
-void ax_select_corner_place(const ax_form_view* view, int count, const int* rim, int n, const int* corners, int k,
-                            double place[2]);
 
 // Names that users give to selections and constraints: 1 to 48 letters, digits, "-", "_" or ".", the first a letter.
 bool ax_is_name(const char* text);

@@ -150,15 +150,15 @@ static ax_status take_near(reader* r, const ax_hinges* among, ax_hinges* set)
     return status;
 }
 
-// Places in `rim` of corners; their number in *count, owned by the caller.
-static ax_status find_corners(const reader* r, const ax_hinges* rim, int** corners, int* count)
+static ax_status find_corners(const reader* r, const ax_hinges* rim, ax_corner* corners, int* count)
 {
     *count = ax_select_corners(&r->view, rim->count, rim->hinges, corners);
     return *count > 0
                ? AX_OK
                : ax_fail(r->error, AX_BAD_INPUT,
-                         "The rim has no sides and corners: it turns nowhere sharply, or more than %d times. Choose "
-                         "a part by angle, such as rim:0..90, or near a point, such as rim:near(1,0,0.2).",
+                         "The sheet has no sides and corners: its outline turns nowhere sharply, or more than %d "
+                         "times. Choose a part by angle, such as rim:0..90, or near a point, such as "
+                         "rim:near(1,0,0.2).",
                          AX_CORNERS_MOST);
 }
 
@@ -187,31 +187,29 @@ static void keep_run(const reader* r, int from, int to, ax_hinges* rim)
 
 static ax_status take_side(reader* r, ax_hinges* rim)
 {
-    int *corners, n, side = 0;
-    ax_status status = find_corners(r, rim, &corners, &n);
+    ax_corner corners[AX_CORNERS_MOST];
+    int n, side = 0;
+    ax_status status = find_corners(r, rim, corners, &n);
     if (status == AX_OK && (status = take_count(r, "sides", n, &side)) == AX_OK)
-        keep_run(r, corners[side - 1], corners[side % n], rim);
-    ax_free(corners);
+        keep_run(r, corners[side - 1].place, corners[side % n].place, rim);
     return status;
 }
 
 static ax_status take_corner(reader* r, ax_hinges* rim)
 {
-    int *corners, n, corner = 0;
-    double at[2], distance = 0;
+    ax_corner corners[AX_CORNERS_MOST];
+    int n, corner = 0;
+    double distance = 0;
     ax_hinges part = ax_hinges_make(r->view.linkage);
-    ax_status status = find_corners(r, rim, &corners, &n);
+    ax_status status = find_corners(r, rim, corners, &n);
     if (status == AX_OK)
         status = take_count(r, "corners", n, &corner);
     if (status == AX_OK && *r->at == '(')
         status = take_numbers(r, 1, &distance);
     if (status == AX_OK && distance < 0)
         status = refuse(r, "a distance of 0 or more is wanted");
-    if (status == AX_OK) {
-        ax_select_corner_place(&r->view, rim->count, rim->hinges, n, corners, corner - 1, at);
-        ax_select_nearest(&r->view, rim, at, distance, &part);
-    }
-    ax_free(corners);
+    if (status == AX_OK)
+        ax_select_nearest(&r->view, rim, corners[corner - 1].at, distance, &part);
     ax_hinges_free(rim);
     *rim = part;
     return status;
