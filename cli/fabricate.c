@@ -71,7 +71,7 @@ static void print_forces(const ax_cut_plan* p, FILE* out)
     }
     if (first < 0)
         return;
-    fprintf(out, "  Hinge forces    %.4g N at most, between %s and %s", most,
+    fprintf(out, "  Hinge forces    %.4g N at most between panels, %s and %s", most,
             p->panels[p->hinges[first].panels[0]].name, p->panels[p->hinges[first].panels[1]].name);
     if (isnan(rated))
         fputs("; the joint has no rated force\n", out);

@@ -92,6 +92,53 @@ void report_print(const ax_design* design, FILE* out)
         fprintf(out, "\n%d limit%s not kept.\n", failing, failing == 1 ? " is" : "s are");
 }
 
+int report_print_failing(const ax_design* design, FILE* out)
+{
+    int count, failing = 0;
+    const ax_figure* figures = ax_report_figures(&count);
+    for (int k = 0; k < count; ++k) {
+        const ax_figure* figure = &figures[k];
+        bool shown = (figure->group != AX_GROUP_FIT || design->target.vertex_count > 0) &&
+                     (figure->group != AX_GROUP_DEPLOYMENT || design->simulated);
+        if (!shown || ax_figure_holds(figure, design))
+            continue;
+        if (failing++ == 0)
+            fputs("\nNot kept:\n", out);
+        print_figure(figure, design, out);
+    }
+    return failing;
+}
+
+void form_print(const ax_form_report* r, ax_unit unit, FILE* out)
+{
+    if (r->held_count)
+        fprintf(out, "\n  %-24s%-14s%8s  %12s\n", "held", "by", "hinges", "off by");
+    for (int k = 0; k < r->held_count; ++k)
+        fprintf(out, "  %-24s%-14s%8d  %12.3g %s\n", r->held[k].name, r->held[k].kind, r->held[k].count,
+                r->held[k].residual, ax_unit_name(unit));
+    for (int k = 0; k < r->finding_count; ++k)
+        fprintf(out, "%s%s\n", k ? "" : "\n", r->findings[k].text);
+}
+
+json_t* form_json(const ax_form_report* r)
+{
+    static const char* const severities[] = {"note", "warning", "failure"};
+    json_t *held = json_array(), *findings = json_array();
+    for (int k = 0; k < r->held_count; ++k) {
+        const ax_held_figure* h = &r->held[k];
+        json_array_append_new(held, json_pack("{s:s, s:s, s:i, s:o}", "name", h->name, "kind", h->kind, "hinges",
+                                              h->count, "residual", json_number(h->residual)));
+    }
+    for (int k = 0; k < r->finding_count; ++k) {
+        const ax_finding* f = &r->findings[k];
+        json_array_append_new(findings, json_pack("{s:s, s:s, s:i, s:i, s:i, s:o, s:o, s:s}", "severity",
+                                                  severities[f->severity], "kind", f->kind, "triangle", f->triangle,
+                                                  "hinge", f->hinge, "other", f->other, "value", json_number(f->value),
+                                                  "limit", json_number(f->limit), "text", f->text));
+    }
+    return json_pack("{s:o, s:o}", "held", held, "findings", findings);
+}
+
 json_t* json_number(double x)
 {
     return isfinite(x) ? json_real(x) : json_null();

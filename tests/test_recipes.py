@@ -56,6 +56,28 @@ class Recipes(CommandCase):
         self.assertIsNotNone(design["simulated"])
         self.assertLess(design["report"]["congruence_max"], 1e-9)
 
+    def test_what_run_says_of_a_form_info_and_export_say_too(self):
+        (self.folder / "floor.obj").write_text("v -9 -9 -0.1\nv 9 -9 -0.1\nv 0 9 -0.1\nf 1 2 3\n")
+        site = [*SMALL, {"op": "underlay", "file": "floor.obj", "name": "floor", "clearance": 0.05}]
+        out = self.folder / "x.auxshell"
+        words = self.succeed("run", self.write([*site, {"op": "finish"}]), "-o", out)
+        found = [line for line in words.splitlines() if "'floor'" in line and "clearance" in line]
+        self.assertEqual(len(found), 1)
+        told = self.succeed("info", out)
+        self.assertIn(found[0], told)
+        self.assertRegex(told, r"boundary +circle")
+        report = json.loads(self.succeed("info", out, "--json"))
+        self.assertIn(found[0], [finding["text"] for finding in report["findings"]])
+        self.assertEqual([held["name"] for held in report["held"]], ["boundary"])
+        seconds = report["report"]
+        self.assertGreater(seconds["seconds_joint"], 0)
+        self.assertGreaterEqual(seconds["seconds_total"], seconds["seconds_joint"] + seconds["seconds_deploy"])
+        self.assertNotIn("Congruence", self.succeed("export", out, "-o", self.folder / "x.svg"))
+        self.succeed("undo", out)  # of the last step: flat and open are not congruent
+        told = self.succeed("export", out, "-o", self.folder / "x.svg")
+        self.assertRegex(told, r"Not kept:\n  Congruence.*FAILS")
+        self.assertIn(f'"auxshell finish {out}"', told)
+
     def test_a_load_on_what_nothing_holds_is_refused(self):
         start, out = SMALL[:2], ("-o", self.folder / "x.auxshell")
         line = {"op": "rim_line", "point": [1, 0, 0], "direction": [0, 1, 0], "hinges": "rim:-40..40"}

@@ -4,6 +4,7 @@
 #include "mesh/geometry.h"
 #include "mesh/topology.h"
 
+#include "base/random.h"
 #include "support/shapes.h"
 #include "support/test.h"
 
@@ -343,6 +344,22 @@ static void steep_bays_are_projected_along_the_normals(void** state)
     ax_mesh_free(&mesh);
 }
 
+// A scan with slivers that stand upright.
+static void slivers_that_cannot_be_projected_are_told_with_their_place(void** state)
+{
+    (void)state;
+    ax_random random = {3};
+    ax_mesh mesh = shape_over_disk(24, two_bumps);
+    for (int v = 0; v < mesh.vertex_count; ++v)
+        for (int c = 0; c < 3; ++c)
+            mesh.positions[v][c] += ax_random_uniform(&random, -0.05, 0.05);
+    ax_projection report;
+    ax_error error = {0};
+    assert_int_equal(ax_target_project(&mesh, NULL, &report, &error), AX_BAD_INPUT);
+    assert_non_null(strstr(error.message, "The thinnest, near ("));
+    ax_mesh_free(&mesh);
+}
+
 static void a_dome_is_left_as_it_is(void** state)
 {
     (void)state;
@@ -439,6 +456,7 @@ int main(void)
         cmocka_unit_test(two_bumps_are_joined_into_one_dome),
         cmocka_unit_test(projection_does_not_depend_on_the_frame),
         cmocka_unit_test(steep_bays_are_projected_along_the_normals),
+        cmocka_unit_test(slivers_that_cannot_be_projected_are_told_with_their_place),
         cmocka_unit_test(a_dome_is_left_as_it_is),
         cmocka_unit_test(a_surface_that_needs_projection_is_told_what_it_costs),
         cmocka_unit_test(an_impossible_band_is_refused),

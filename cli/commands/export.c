@@ -2,6 +2,7 @@
 #include "fabricate.h"
 #include "output.h"
 #include "progress.h"
+#include "report.h"
 
 #include "ax/document.h"
 #include "ax/export.h"
@@ -141,6 +142,8 @@ static ax_status export_design(const arguments* a, int count, const char* const*
         print_written(paths[k], &plan);
     if (status == AX_OK && plan.sheet_count)
         fabricate_print(&plan, stdout);
+    if (status == AX_OK && report_print_failing(&design, stdout) && !design.simulated)
+        printf("Not proven to deploy: \"auxshell finish %s\" makes it exact before it is cut.\n", a->document);
     ax_cut_plan_free(&plan);
     ax_design_free(&design);
     return status;
@@ -162,10 +165,10 @@ static ax_status run(const void* given, ax_error* error)
         else
             status = ax_fail(error, AX_USAGE, "%s and %s would be the same recipe. Name one.", recipe, path);
     }
-    if (status == AX_OK && recipe)
-        status = export_recipe(a, recipe, error);
     if (status == AX_OK && count)
         status = export_design(a, count, paths, error);
+    if (status == AX_OK && recipe)
+        status = export_recipe(a, recipe, error);
     return status;
 }
 

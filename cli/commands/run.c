@@ -2,6 +2,7 @@
 #include "options.h"
 #include "output.h"
 #include "progress.h"
+#include "report.h"
 
 #include "ax/session.h"
 
@@ -49,18 +50,14 @@ static void print_state(ax_form* form)
     ax_form_report r;
     ax_form_measure(form, &r);
     const char* unit = ax_unit_name(ax_form_look(form).unit);
-    printf("\n%s after %d iterations. Mean edge %.4g %s, scale factors %.3f to %.3f, smallest mouth %.1f degrees.\n",
-           !r.settled ? "Not settled"
-           : r.exact  ? "Exact"
-                      : "Settled",
-           r.iterations, r.edge, unit, r.realised_min, r.realised_max, r.mouth_min * 57.29577951308232);
-    if (r.held_count)
-        printf("\n  %-24s%-14s%8s  %12s\n", "held", "by", "hinges", "off by");
-    for (int k = 0; k < r.held_count; ++k)
-        printf("  %-24s%-14s%8d  %12.3g %s\n", r.held[k].name, r.held[k].kind, r.held[k].count, r.held[k].residual,
-               unit);
-    for (int k = 0; k < r.finding_count; ++k)
-        printf("%s%s\n", k ? "" : "\n", r.findings[k].text);
+    printf(
+        "\n%s after %d iterations. Mean edge %.4g %s, scale factors within the sheet %.3f to %.3f, smallest mouth %.1f "
+        "degrees.\n",
+        !r.settled ? "Not settled"
+        : r.exact  ? "Exact"
+                   : "Settled",
+        r.iterations, r.edge, unit, r.realised_min, r.realised_max, r.mouth_min * 57.29577951308232);
+    form_print(&r, ax_form_look(form).unit, stdout);
     if (ax_form_get_dynamics(form)->kind == AX_DYNAMICS_NONE)
         printf("\nOnly the flat state is solved yet: expand, gravity or inflation opens the sheet.\n");
     ax_form_report_free(&r);
@@ -75,6 +72,8 @@ static ax_status print_opening(ax_session* session, ax_error* error)
     if (status == AX_OK && design && design->simulated)
         printf("\nSimulated %.4f L rms from the design, %s.\n", design->report.simulated_rms_over_L,
                ax_report_opening(&design->report));
+    if (status == AX_OK && design)
+        report_print_failing(design, stdout);
     return status;
 }
 

@@ -142,12 +142,16 @@ static bool cut_to_corner(const ax_form* f, int hinge)
         if (ax_distance2(f->lattice.hinges[near], f->lattice.hinges[hinge]) > 2 * spacing)
             continue;
         ax_curve* curve = ax_curve_of_shape(&f->rim[k].curve);
-        double on[3], at = ax_curve_length(curve, ax_curve_nearest(curve, f->deployed[near], on)), way[2][3], second[3];
+        double on[3], at = ax_curve_length(curve, ax_curve_nearest(curve, f->deployed[near], on)), way[2][3], second[3],
+                      reach_along = along * ax_form_sides_mean(f);
+        ax_curve_range range = ax_curve_extent(curve);
         for (int side = 0; side < 2; ++side)
-            ax_curve_derivatives(curve, ax_curve_at_length(curve, at + (side ? along : -along) * ax_form_sides_mean(f)),
-                                 way[side], second);
+            ax_curve_derivatives(curve, ax_curve_at_length(curve, at + (side ? reach_along : -reach_along)), way[side],
+                                 second);
         double lengths = ax_norm3(way[0]) * ax_norm3(way[1]);
-        bool arc = lengths > 0 && ax_dot3(way[0], way[1]) > cos(least_turn) * lengths;
+        bool ends = !range.closed && (at < ax_curve_length(curve, range.from) + reach_along ||
+                                      at > ax_curve_length(curve, range.to) - reach_along);
+        bool arc = !ends && lengths > 0 && ax_dot3(way[0], way[1]) > cos(least_turn) * lengths;
         ax_curve_free(curve);
         return arc;
     }

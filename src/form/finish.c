@@ -2,6 +2,7 @@
 #include "form/state.h"
 
 #include "analysis/measure.h"
+#include "base/clock.h"
 #include "base/vec.h"
 #include "design/apart.h"
 #include "design/simulate.h"
@@ -211,6 +212,7 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
 {
     const ax_linkage* linkage = &f->lattice.linkage;
     int n = linkage->hinge_count;
+    double start = ax_seconds();
     *design = (ax_design){0};
     *finish = (ax_finish){.reason = ""};
     ax_form_build(f);
@@ -245,6 +247,7 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
     ax_progress_part first, second;
     ax_status status =
         solve_clear(f, &problem, flat, deployed, ax_progress_within(&first, progress, 0, 0.4), &joint, error);
+    double solved = ax_seconds();
     if (status == AX_OK && !joint.converged)
         status = ax_form_fail_joint(f, &joint, error);
     if (status == AX_OK) {
@@ -260,6 +263,7 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
         ++f->revision;
         make_design(f, design);
         design->report.joint_steps = joint.steps;
+        design->report.seconds_joint = solved - start;
         for (int h = 0; h < n; ++h)
             design->supports[h] = holds[h].kind != AX_HOLD_FREE;
         ax_curve** lines = hold_arches(f, (const double(*)[3])deployed, holds);
@@ -297,6 +301,7 @@ ax_status ax_form_finish(ax_form* f, const ax_progress* progress, ax_design* des
         finish->flat_moved_rms = a.rms, finish->flat_moved_max = a.max;
         finish->deployed_moved_rms = b.rms, finish->deployed_moved_max = b.max;
         finish->exact = status == AX_OK && !*finish->reason;
+        design->report.seconds_total = ax_seconds() - start;
         f->exact = finish->exact;
         f->settled = true;
         ax_solver_reset_multipliers(f->shape);

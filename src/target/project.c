@@ -313,6 +313,28 @@ static void settle(obstacle* o, int* steps, bool* settled)
     }
 }
 
+// Says how thin the thinnest triangle is, and where.
+static ax_status refuse_thin(const ax_mesh* mesh, ax_error* error)
+{
+    int thinnest = 0;
+    double least = INFINITY;
+    for (int f = 0; f < mesh->face_count; ++f) {
+        double longest = 0;
+        for (int k = 0; k < 3; ++k)
+            longest = fmax(longest, ax_distance3(mesh->positions[mesh->faces[f][k]],
+                                                 mesh->positions[mesh->faces[f][(k + 1) % 3]]));
+        double height = longest > 0 ? 2 * ax_face_area(mesh, f) / (longest * longest) : 0;
+        if (height < least)
+            least = height, thinnest = f;
+    }
+    const double* at = mesh->positions[mesh->faces[thinnest][0]];
+    return ax_fail(
+        error, AX_BAD_INPUT,
+        "The surface could not be projected: some triangles are too thin. The thinnest, near (%.4g, %.4g, %.4g), "
+        "is %.2g times as high as long. Remesh it with rounder triangles.",
+        at[0], at[1], at[2], least);
+}
+
 // Along an axis first, if there is one, since that keeps the plan. There a steep part behind a concave rim can have no
 // solution (it would have to hang over the rim); along the vertex normals it has. The better of the two is kept.
 static ax_status solve(obstacle* o, int* steps, ax_error* error)
@@ -340,11 +362,7 @@ static ax_status solve(obstacle* o, int* steps, ax_error* error)
     ax_free(along_axis);
     if (o->cancelled)
         return ax_fail(error, AX_CANCELLED, "Cancelled.");
-    if (*steps == 0)
-        return ax_fail(error, AX_FAILED,
-                       "The surface could not be projected: some triangles are too thin. Remesh it with rounder "
-                       "triangles.");
-    return AX_OK;
+    return *steps > 0 ? AX_OK : refuse_thin(o->start, error);
 }
 
 ax_status ax_target_project(ax_mesh* mesh, const ax_progress* progress, ax_projection* report, ax_error* error)
