@@ -21,7 +21,7 @@ enum {
     STATES = 5,
     TURNS = 4,         // of a sheet in its rim, at most
     FIRST_TURN = 2500, // blocks of iterations that it stands for
-    CALM = 6,          // blocks until what it stirred up has died down
+    CALM = 8,          // blocks until what it stirred up has died down
     LAST_CALM = 4,     // the same, of the last turn, which is small
     STALLED = 450      // iterations without better edges: they cannot be right
 };
