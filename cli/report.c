@@ -122,19 +122,19 @@ void form_print(const ax_form_report* r, ax_unit unit, FILE* out)
 
 json_t* form_json(const ax_form_report* r)
 {
-    static const char* const severities[] = {"note", "warning", "failure"};
     json_t *held = json_array(), *findings = json_array();
     for (int k = 0; k < r->held_count; ++k) {
         const ax_held_figure* h = &r->held[k];
-        json_array_append_new(held, json_pack("{s:s, s:s, s:i, s:o}", "name", h->name, "kind", h->kind, "hinges",
-                                              h->count, "residual", json_number(h->residual)));
+        json_array_append_new(held, json_pack("{s:s, s:s, s:i, s:o, s:i, s:o}", "name", h->name, "kind", h->kind,
+                                              "count", h->count, "residual", json_number(h->residual), "hinge",
+                                              h->hinge, "multiplier", json_number(h->multiplier)));
     }
     for (int k = 0; k < r->finding_count; ++k) {
         const ax_finding* f = &r->findings[k];
-        json_array_append_new(findings, json_pack("{s:s, s:s, s:i, s:i, s:i, s:o, s:o, s:s}", "severity",
-                                                  severities[f->severity], "kind", f->kind, "triangle", f->triangle,
-                                                  "hinge", f->hinge, "other", f->other, "value", json_number(f->value),
-                                                  "limit", json_number(f->limit), "text", f->text));
+        json_array_append_new(
+            findings, json_pack("{s:s, s:s, s:i, s:i, s:i, s:o, s:o, s:s}", "severity", ax_severity_name(f->severity),
+                                "kind", f->kind, "triangle", f->triangle, "hinge", f->hinge, "other", f->other, "value",
+                                json_number(f->value), "limit", json_number(f->limit), "text", f->text));
     }
     return json_pack("{s:o, s:o}", "held", held, "findings", findings);
 }

@@ -53,7 +53,7 @@ static void print_design(const char* path, const ax_design* d, const ax_form_rep
     const char* how = ax_report_opening(&d->report);
     printf("  Deployed by     %s, held at %d hinges%s%s\n", load, count_supports(d), *how ? "; " : "", how);
     report_print(d, stdout);
-    if (form->finding_count > 0)
+    if (form->held_count + form->finding_count > 0)
         printf("\nOf the form that was asked for:\n");
     form_print(form, d->unit, stdout);
 }

@@ -214,6 +214,7 @@ int ax_form_constraints(const ax_form* form, const ax_form_constraint** constrai
 int ax_form_underlays(const ax_form* form, const char*** names, const ax_mesh** meshes, const double** clearances);
 
 typedef enum ax_severity { AX_SEVERITY_NOTE, AX_SEVERITY_WARNING, AX_SEVERITY_FAILURE } ax_severity;
+const char* ax_severity_name(ax_severity severity); // "note", "warning", "failure"
 typedef struct ax_finding {
     ax_severity severity;
     const char* kind;    // "mouth", "overlap", "unequal", "slack", "tight", "overhang", "held", "scale",

@@ -31,6 +31,12 @@ static ax_finding* tell(ax_form_report* r, ax_severity severity, const char* kin
     return finding;
 }
 
+const char* ax_severity_name(ax_severity severity)
+{
+    static const char* const names[] = {"note", "warning", "failure"};
+    return names[severity];
+}
+
 static int by_severity(const ax_finding* x, const ax_finding* y)
 {
     return x->severity != y->severity ? (int)y->severity - (int)x->severity : strcmp(x->kind, y->kind);

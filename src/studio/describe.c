@@ -473,14 +473,14 @@ static json_t* figures(const ax_design* design)
 json_t* describe_report(unsigned revision, const ax_form_report* r, const ax_form_view* v, const shape_measures* m,
                         const ax_design* exact, bool at_rest)
 {
-    static const char* const severities[] = {"note", "warning", "failure"};
     json_t *checks = describe_checks(r, v, m, exact, at_rest), *findings = json_array(), *all_held = json_array();
     for (int k = 0; k < r->finding_count; ++k) {
         const ax_finding* f = &r->findings[k];
-        json_array_append_new(findings, json_pack("{s:s, s:s, s:s, s:o, s:o, s:i, s:i, s:i}", "severity",
-                                                  severities[f->severity], "kind", f->kind, "text", f->text, "value",
-                                                  describe_number(f->value), "limit", describe_number(f->limit),
-                                                  "triangle", f->triangle, "hinge", f->hinge, "other", f->other));
+        json_array_append_new(findings,
+                              json_pack("{s:s, s:s, s:s, s:o, s:o, s:i, s:i, s:i}", "severity",
+                                        ax_severity_name(f->severity), "kind", f->kind, "text", f->text, "value",
+                                        describe_number(f->value), "limit", describe_number(f->limit), "triangle",
+                                        f->triangle, "hinge", f->hinge, "other", f->other));
     }
     for (int k = 0; k < r->held_count; ++k) {
         const ax_held_figure* f = &r->held[k];
