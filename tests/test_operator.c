@@ -859,6 +859,7 @@ static void corners_are_those_of_the_outline(void** state)
         {"\"start_outline\", \"points\": [[-2, -1], [-2, 1], [0, 1], [0, -0.2], [1, -0.2], [1, 1], [2, 1], [2, -1]]",
          8,
          {2, 1}},
+        {"\"start_outline\", \"points\": [[-2, -1], [2, -1], [2, -1], [2, 1], [-2, 1], [-2, -1]]", 4, {2, 1}},
         {"\"start_circle\", \"radius\": 1", 0, {0}},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k)

@@ -9,6 +9,7 @@
 static const double sharp_turn = 25 * AX_PI / 180; // of a corner, at least; a dodecagon's are 30 degrees
 static const double round_turn = 60 * AX_PI / 180; // at a point of a rounded one, at most
 static const double round_radius = 0.3; // of a rounded one, at most, over that of a disk as large as the sheet
+static const double same = 1e-9;        // radii between points that are one given twice
 static const double straight = 0.05;    // by how much of its length a side between rounded corners may bulge
 
 // The outline, counter-clockwise, and by which angle it turns at each of its points.
@@ -20,13 +21,18 @@ typedef struct path {
 static path measure_outline(const ax_form_view* view)
 {
     int n = view->outline_count;
-    path p = {n, ax_alloc((size_t)n, sizeof *p.at), AX_NEW(double, n), 0};
+    path p = {0, ax_alloc((size_t)n, sizeof *p.at), AX_NEW(double, n), 0};
     double area = 0;
     for (int k = 0; k < n; ++k)
         area += 0.5 * ax_cross2(view->outline[k], view->outline[(k + 1) % n]);
-    for (int k = 0; k < n; ++k)
-        memcpy(p.at[k], view->outline[area > 0 ? k : n - 1 - k], sizeof *p.at);
     p.radius = sqrt(fabs(area) / AX_PI);
+    for (int k = 0; k < n; ++k) {
+        const double *at = view->outline[area > 0 ? k : n - 1 - k],
+                     *next = view->outline[area > 0 ? (k + 1) % n : (2 * n - 2 - k) % n];
+        if (ax_distance2(at, next) > same * p.radius)
+            memcpy(p.at[p.count++], at, sizeof *p.at);
+    }
+    n = p.count;
     for (int k = 0; k < n; ++k) {
         const double *a = p.at[(k + n - 1) % n], *b = p.at[k], *c = p.at[(k + 1) % n];
         double in[2] = {b[0] - a[0], b[1] - a[1]}, out[2] = {c[0] - b[0], c[1] - b[1]};
