@@ -184,9 +184,9 @@ ax_status ax_form_finish(ax_form* form, const ax_progress* progress, ax_design* 
 typedef struct ax_form_view {
     const ax_linkage* linkage;
     ax_unit unit;
-    double spacing;               // of the undeformed lattice; a panel of scale lambda has edges lambda spacing / 2
-    const double (*sheet)[2];     // hinges of the undeformed lattice
-    int outline_count;            // points of the outline that it was laid over; 0: over none
+    double spacing;           // of the undeformed lattice; a panel of scale lambda has edges lambda spacing / 2
+    const double (*sheet)[2]; // hinges of the undeformed lattice
+    int outline_count;        // points of the outline that it was laid over; 0: over none
     const double (*outline)[2];
     const double* prescribed;     // per triangle
     const double* realised;       // scale factors measured on the present flat state
