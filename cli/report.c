@@ -65,11 +65,18 @@ static void print_figure(const ax_figure* figure, const ax_design* design, FILE*
     putc('\n', out);
 }
 
+// Figures of the fit to a target, or of the simulated state, where there is none.
+static bool is_of_nothing(const ax_figure* figure, const ax_design* design)
+{
+    return (figure->group == AX_GROUP_FIT && design->target.vertex_count == 0) ||
+           (figure->group == AX_GROUP_DEPLOYMENT && !design->simulated);
+}
+
 void report_print(const ax_design* design, FILE* out)
 {
     int count, failing = 0;
     const ax_figure* figures = ax_report_figures(&count);
-    bool simulated = design->simulated != NULL, targeted = design->target.vertex_count > 0;
+    bool targeted = design->target.vertex_count > 0;
     for (int k = 0; k < count; ++k) {
         const ax_figure* figure = &figures[k];
         if (figure->group == AX_GROUP_FIT && !targeted)
@@ -78,15 +85,14 @@ void report_print(const ax_design* design, FILE* out)
             fprintf(out, "\n%s\n", ax_figure_group_name(figure->group));
         if (is_no_place(figure, &design->report))
             continue;
-        bool of_simulated = figure->group == AX_GROUP_DEPLOYMENT && figure->kind != AX_FIGURE_FLAG;
-        if (of_simulated && !simulated)
+        if (is_of_nothing(figure, design) && figure->kind != AX_FIGURE_FLAG)
             continue; // one line says that it is missing
         print_figure(figure, design, out);
         failing += !ax_figure_holds(figure, design);
     }
     if (failing == 0)
         fputs("\nEvery limit holds: the flat sheet deploys to the designed shape.\n", out);
-    else if (!simulated)
+    else if (!design->simulated)
         fputs("\nNot proven: there is no simulated state.\n", out);
     else
         fprintf(out, "\n%d limit%s not kept.\n", failing, failing == 1 ? " is" : "s are");
@@ -98,9 +104,7 @@ int report_print_failing(const ax_design* design, FILE* out)
     const ax_figure* figures = ax_report_figures(&count);
     for (int k = 0; k < count; ++k) {
         const ax_figure* figure = &figures[k];
-        bool shown = (figure->group != AX_GROUP_FIT || design->target.vertex_count > 0) &&
-                     (figure->group != AX_GROUP_DEPLOYMENT || design->simulated);
-        if (!shown || ax_figure_holds(figure, design))
+        if (is_of_nothing(figure, design) || ax_figure_holds(figure, design))
             continue;
         if (failing++ == 0)
             fputs("\nNot kept:\n", out);

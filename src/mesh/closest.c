@@ -171,26 +171,21 @@ static double segments_squared(const double a[3], const double b[3], const doubl
 // Whether the segment a b goes through the triangle: its ends lie on two sides, and its line passes all edges on the same.
 static bool goes_through(const double a[3], const double b[3], const double corners[3][3])
 {
-    double along[3], volume[3], side[2];
-    const double* ends[2] = {a, b};
+    double along[3], volume[3], normal[3], from[3], to[3];
     ax_sub3(b, a, along);
     for (int k = 0; k < 3; ++k) {
-        double edge[3], to[3], across[3];
+        double edge[3], reach[3], across[3];
         ax_sub3(corners[(k + 1) % 3], corners[k], edge);
-        ax_sub3(a, corners[k], to);
-        ax_cross(edge, to, across);
+        ax_sub3(a, corners[k], reach);
+        ax_cross(edge, reach, across);
         volume[k] = ax_dot3(across, along);
     }
-    double edge[2][3], normal[3];
-    for (int k = 0; k < 2; ++k)
-        ax_sub3(corners[k + 1], corners[0], edge[k]);
-    ax_cross(edge[0], edge[1], normal);
-    for (int k = 0; k < 2; ++k) {
-        double to[3];
-        ax_sub3(ends[k], corners[0], to);
-        side[k] = ax_dot3(to, normal);
-    }
-    return side[0] * side[1] < 0 && volume[0] * volume[1] > 0 && volume[1] * volume[2] > 0;
+    ax_sub3(corners[1], corners[0], from);
+    ax_sub3(corners[2], corners[0], to);
+    ax_cross(from, to, normal);
+    ax_sub3(a, corners[0], from);
+    ax_sub3(b, corners[0], to);
+    return ax_dot3(from, normal) * ax_dot3(to, normal) < 0 && volume[0] * volume[1] > 0 && volume[1] * volume[2] > 0;
 }
 
 // Two triangles are nearest at a corner of one, between two edges, or where an edge goes through the other.

@@ -266,8 +266,8 @@ int ax_select_corners(const ax_form_view* view, int count, const int* rim, ax_co
     double smallest = INFINITY;
     find_middle(view, middle);
     for (int k = 0; k < n; ++k) {
-        double angle = fmod(ax_angle_about(middle, at[k]) + 1,
-                            360); // straight to the right is first, whatever rounding makes of it
+        // straight to the right is first, whatever rounding makes of it
+        double angle = fmod(ax_angle_about(middle, at[k]) + 1, 360);
         if (angle < smallest)
             smallest = angle, first = k;
     }
