@@ -282,7 +282,8 @@ void ax_form_free(ax_form* f)
                       f->holes,   f->prescribed, f->rim,       f->held,     f->sets,           f->underlays,
                       f->flat,    f->deployed,   f->simulated, f->side,     f->underlay_names, f->clearances,
                       f->pending, f->realised,   f->opening,   f->material, f->scratch,        f->lanes,
-                      f->stretch, f->pull,       f->outline,   f->panel,    f->coarse};
+                      f->stretch, f->pull,       f->outline,   f->panel,    f->drawn,
+                      f->coarse.deployed, f->coarse.simulated};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_free(f);

@@ -68,13 +68,34 @@ static void mean_places(const ax_form* f, const ax_form* coarse, int count, cons
             mean[h][c] += coarse->lattice.hinges[h][c];
 }
 
+// Which part of the rim holds every coarse hinge, -1: none. That which holds the fine hinge nearest to it; and where it is nearest to one that is
+// held, so that a part reaches as far as it does on the fine sheet, and single supports stay.
+static void share_rim(const ax_sheet_map* fine, const ax_form* coarse, const int* to_coarse, int* part_of)
+{
+    const ax_form* f = fine->form;
+    int *to_fine = nearest_hinges(coarse, fine), *held_by = AX_NEW(int, f->lattice.linkage.hinge_count);
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
+        held_by[h] = -1;
+    for (int k = 0; k < f->rim_count; ++k)
+        for (int i = 0; i < f->rim[k].count; ++i)
+            held_by[f->rim[k].hinges[i]] = k;
+    for (int h = 0; h < coarse->lattice.linkage.hinge_count; ++h)
+        part_of[h] = coarse->lattice.linkage.on_rim[h] ? held_by[to_fine[h]] : -1;
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
+        if (held_by[h] >= 0 && part_of[to_coarse[h]] < 0)
+            part_of[to_coarse[h]] = held_by[h];
+    ax_free(held_by);
+    ax_free(to_fine);
+}
+
 // Every coarse hinge of the rim is held as the fine one nearest to it.
 static ax_status carry_rim(const ax_sheet_map* fine, ax_form* coarse, const int* to_coarse, ax_error* error)
 {
     const ax_form* f = fine->form;
     const ax_linkage* linkage = &coarse->lattice.linkage;
     int n = linkage->hinge_count, *to_fine = nearest_hinges(coarse, fine), *members = AX_NEW(int, n);
-    int* place_of = AX_NEW0(int, f->lattice.linkage.hinge_count); // in its part, from 1
+    int *part_of = AX_NEW(int, n), *place_of = AX_NEW0(int, f->lattice.linkage.hinge_count); // in its part, from 1
+    share_rim(fine, coarse, to_coarse, part_of);
     ax_rim_part* parts = AX_NEW0(ax_rim_part, f->rim_count + 1);
     double(*mean)[3] = ax_alloc((size_t)n, sizeof *mean);
     for (int k = 0; k < f->rim_count; ++k) {
@@ -86,7 +107,7 @@ static ax_status carry_rim(const ax_sheet_map* fine, ax_form* coarse, const int*
         if (from->kind == AX_RIM_FIXED)
             mean_places(f, coarse, from->count, from->hinges, from->places, to_coarse, mean, members);
         for (int h = 0; h < n; ++h)
-            if (linkage->on_rim[h] && place_of[to_fine[h]]) {
+            if (part_of[h] == k) {
                 if (from->kind == AX_RIM_FIXED)
                     memcpy(places[count], members[h] ? mean[h] : from->places[place_of[to_fine[h]] - 1],
                            sizeof *places);
@@ -104,6 +125,7 @@ static ax_status carry_rim(const ax_sheet_map* fine, ax_form* coarse, const int*
     ax_free(mean);
     ax_free(parts);
     ax_free(place_of);
+    ax_free(part_of);
     ax_free(members);
     ax_free(to_fine);
     return status;
@@ -178,9 +200,28 @@ static ax_form* coarsen(const ax_form* f, int panels)
     return NULL;
 }
 
-bool ax_form_nest(ax_form* f, const ax_progress* progress, bool* nested)
+// States of a sheet at the hinges of another of the same design.
+static void carry_states(const ax_form* from, const ax_form* to, double (*deployed)[3], double (*simulated)[3])
 {
-    int n = f->lattice.linkage.hinge_count, panels = COARSEST;
+    int n = to->lattice.linkage.hinge_count;
+    const double(*hinges)[2] = (const double(*)[2])to->lattice.hinges;
+    ax_sheet_map* map = ax_sheet_map_make(from);
+    ax_sheet_map_carry(map, (const double(*)[3])from->deployed, n, hinges, deployed);
+    ax_sheet_map_carry(map, (const double(*)[3])from->simulated, n, hinges, simulated);
+    ax_sheet_map_free(map);
+}
+
+static void start_at_coarse(ax_form* f)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    memcpy(f->deployed, f->coarse.deployed, n * sizeof *f->deployed);
+    memcpy(f->simulated, f->coarse.simulated, n * sizeof *f->simulated);
+}
+
+bool ax_form_nest(ax_form* f, bool afresh, const ax_progress* progress, bool* nested)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    int panels = COARSEST;
     *nested = false;
     if (f->outline_count == 0 || f->lattice.linkage.triangle_count < LEAST_NESTED)
         return true;
@@ -189,44 +230,98 @@ bool ax_form_nest(ax_form* f, const ax_progress* progress, bool* nested)
     ax_form* coarse = coarsen(f, panels);
     if (!coarse)
         return true;
+    if (!afresh) {
+        carry_states(f, coarse, coarse->deployed, coarse->simulated);
+        if (coarse->lattice.linkage.triangle_count >= LEAST_NESTED) // it follows one that is coarser still
+            coarse->drawn =
+                ax_copy(coarse->deployed, (size_t)coarse->lattice.linkage.hinge_count, sizeof *coarse->drawn);
+    }
     ax_error error;
     ax_status status = ax_form_settle(coarse, 0, progress, &error);
     if (status == AX_OK) {
-        const double(*hinges)[2] = (const double(*)[2])f->lattice.hinges;
-        ax_sheet_map* map = ax_sheet_map_make(coarse);
-        ax_sheet_map_carry(map, (const double(*)[3])coarse->deployed, n, hinges, f->deployed);
-        ax_sheet_map_carry(map, (const double(*)[3])coarse->simulated, n, hinges, f->simulated);
-        ax_sheet_map_free(map);
-        f->coarse = ax_copy(ax_form_hangs(f) ? f->simulated : f->deployed, (size_t)n, sizeof *f->coarse);
-        ax_form_changed(f, false, true);
+        f->coarse.deployed = ax_alloc(n, sizeof *f->coarse.deployed);
+        f->coarse.simulated = ax_alloc(n, sizeof *f->coarse.simulated);
+        carry_states(coarse, f, f->coarse.deployed, f->coarse.simulated);
+        if (afresh) {
+            start_at_coarse(f);
+            ax_form_changed(f, false, true);
+        } else {
+            memcpy(f->drawn, f->coarse.deployed, n * sizeof *f->drawn);
+            ax_form_aim_drawn(f);
+        }
         *nested = true;
     }
     ax_form_free(coarse);
     return status != AX_CANCELLED;
 }
 
-void ax_form_leave_nest(ax_form* f)
+int ax_form_list_inner(const ax_form* f, double margin, int* hinges)
 {
-    static const double margin = 0.05; // of the size of the sheet: nearer to the rim it goes by steps of panels
-    f->apart = 0;
-    if (!f->coarse)
-        return;
-    const double(*x)[3] = (const double(*)[3])(ax_form_hangs(f) ? f->simulated : f->deployed);
-    double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0;
+    int count = 0;
     ax_polyline* outline = ax_form_outline_line(f->outline_count, (const double(*)[2])f->outline);
     for (int h = 0; h < f->lattice.linkage.hinge_count; ++h) {
         const double* at = f->lattice.hinges[h];
+        if (ax_polyline_find(outline, (const double[3]){at[0], at[1], 0}).distance > margin * f->radius)
+            hinges[count++] = h;
+    }
+    ax_polyline_free(outline);
+    return count;
+}
+
+// How far hinges are from where the coarser sheet has them, over the size of the sheet, at most; and which.
+static double away(const ax_form* f, const double (*x)[3], const double (*coarse)[3], int* hinge)
+{
+    static const double margin = 0.1; // nearer to the rim they go by steps of panels
+    int n = f->lattice.linkage.hinge_count, *inner = AX_NEW(int, n), count = ax_form_list_inner(f, margin, inner);
+    double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0, most = 0;
+    for (int h = 0; h < n; ++h)
         for (int c = 0; c < 3; ++c)
             lo[c] = fmin(lo[c], x[h][c]), hi[c] = fmax(hi[c], x[h][c]);
-        double apart = ax_distance3(x[h], f->coarse[h]);
-        if (apart > f->apart &&
-            ax_polyline_find(outline, (const double[3]){at[0], at[1], 0}).distance > 2 * margin * f->radius)
-            f->apart = apart, f->apart_hinge = h;
-    }
     for (int c = 0; c < 3; ++c)
         size = fmax(size, hi[c] - lo[c]);
-    f->apart /= size;
-    ax_polyline_free(outline);
-    ax_free(f->coarse);
-    f->coarse = NULL;
+    for (int k = 0; k < count; ++k) {
+        double distance = ax_distance3(x[inner[k]], coarse[inner[k]]);
+        if (distance > most)
+            most = distance, *hinge = inner[k];
+    }
+    ax_free(inner);
+    return most / size;
+}
+
+bool ax_form_draw_to_nest(ax_form* f)
+{
+    static const double least = 0.01; // of the size
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    int hinge;
+    if (!f->coarse.deployed || f->drawn || !ax_form_may_fold(f) ||
+        away(f, (const double(*)[3])f->deployed, (const double(*)[3])f->coarse.deployed, &hinge) < least)
+        return false;
+    f->drawn = ax_copy(f->coarse.deployed, n, sizeof *f->drawn);
+    start_at_coarse(f);
+    ax_form_changed(f, true, true);
+    ax_form_build(f);
+    return true;
+}
+
+void ax_form_let_go(ax_form* f)
+{
+    if (!f->drawn)
+        return;
+    ax_free(f->drawn);
+    f->drawn = NULL;
+    ax_form_changed(f, true, true);
+    ax_form_build(f);
+}
+
+void ax_form_leave_nest(ax_form* f)
+{
+    f->apart = 0;
+    if (!f->coarse.deployed)
+        return;
+    bool hangs = ax_form_hangs(f);
+    f->apart = away(f, (const double(*)[3])(hangs ? f->simulated : f->deployed),
+                    (const double(*)[3])(hangs ? f->coarse.simulated : f->coarse.deployed), &f->apart_hinge);
+    ax_free(f->coarse.deployed);
+    ax_free(f->coarse.simulated);
+    f->coarse = (ax_form_coarse){NULL, NULL};
 }

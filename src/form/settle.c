@@ -38,7 +38,7 @@ static const char shaping[] = "Shaping the sheet", loading[] = "Loading the shee
 
 // States as they were before a call that is cancelled.
 typedef struct snapshot {
-    double (*flat)[2], (*deployed)[3], (*simulated)[3], (*side)[3], *multipliers, growth;
+    double (*flat)[2], (*deployed)[3], (*simulated)[3], (*side)[3], (*drawn)[3], *multipliers, growth;
     size_t count;
     int iterations;
 } snapshot;
@@ -50,6 +50,7 @@ static snapshot keep(const ax_form* f)
                   .deployed = ax_copy(f->deployed, n, sizeof *f->deployed),
                   .simulated = ax_copy(f->simulated, n, sizeof *f->simulated),
                   .side = ax_copy(f->side, (size_t)f->lattice.linkage.triangle_count, sizeof *f->side),
+                  .drawn = f->drawn ? ax_copy(f->drawn, n, sizeof *f->drawn) : NULL,
                   .growth = f->growth,
                   .iterations = f->iterations};
     s.multipliers = ax_form_multipliers(f, &s.count);
@@ -63,6 +64,9 @@ static void restore(ax_form* f, snapshot* s)
     memcpy(f->deployed, s->deployed, n * sizeof *f->deployed);
     memcpy(f->simulated, s->simulated, n * sizeof *f->simulated);
     memcpy(f->side, s->side, (size_t)f->lattice.linkage.triangle_count * sizeof *f->side);
+    ax_free(f->drawn);
+    f->drawn = s->drawn;
+    s->drawn = NULL;
     f->growth = s->growth;
     f->iterations = s->iterations;
     ax_form_drop_solvers(f);
@@ -78,6 +82,7 @@ static void forget(snapshot* s)
     ax_free(s->deployed);
     ax_free(s->simulated);
     ax_free(s->side);
+    ax_free(s->drawn);
     ax_free(s->multipliers);
 }
 
@@ -243,20 +248,29 @@ static bool come_to_rest(ax_form* f, const ax_progress* progress, double lo, dou
            (ax_form_simulated_error(f) > balance_error || ax_form_balance(f, load, rest, balanced));
 }
 
-// For given iterations; 0: until forces are in balance. From where it is, so that slack parts stay as they lie; else from the open
-// shape, whose edges are right. False if cancelled.
-static bool load_sheet(ax_form* f, int iterations, const ax_progress* progress)
+// The load comes upon the open shape, whose edges are right.
+static void load_open_shape(ax_form* f)
+{
+    memcpy(f->simulated, f->deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
+    ax_solver_reset_multipliers(f->hang);
+}
+
+// For given iterations; 0: until forces are in balance. From where it is, so that slack parts stay as they lie, or afresh from the open
+// shape. False if cancelled.
+static bool load_sheet(ax_form* f, int iterations, bool afresh, const ax_progress* progress)
 {
     if (iterations > 0)
         return run(f, false, iterations, iterations, progress, 0.5, 1);
+    afresh = afresh && ax_form_shares(f);
+    if (afresh)
+        load_open_shape(f);
     bool balanced;
     if (!come_to_rest(f, progress, 0.5, 0.65, &balanced))
         return false;
     if (ax_form_shares(f) && shape_error(f) > good_error) // nor can it be right under load
         return true;
-    if (!balanced && ax_form_shares(f)) {
-        memcpy(f->simulated, f->deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
-        ax_solver_reset_multipliers(f->hang);
+    if (!balanced && !afresh && ax_form_shares(f)) {
+        load_open_shape(f);
         if (!come_to_rest(f, progress, 0.65, 0.8, &balanced))
             return false;
     }
@@ -282,7 +296,7 @@ static bool start_afresh(ax_form* f, int iterations, const ax_progress* progress
 {
     ax_progress_part part;
     bool nested = false;
-    if (iterations == 0 && !ax_form_nest(f, ax_progress_within(&part, progress, 0, coarse_share), &nested))
+    if (iterations == 0 && !ax_form_nest(f, true, ax_progress_within(&part, progress, 0, coarse_share), &nested))
         return false;
     *gone = nested ? coarse_share : 0;
     // Panels that give way before the holes are open settle for a flatter shape, and leave it slowly. All of the load leans on the sheet until they
@@ -299,8 +313,19 @@ static bool start_afresh(ax_form* f, int iterations, const ax_progress* progress
            lean_on(f, iterations > 0 ? share : LEAN_ITERATIONS, progress, *gone);
 }
 
+// A sheet that is drawn to where a coarser one rests goes where that goes. False if cancelled.
+static bool follow_nest(ax_form* f, const ax_progress* progress, double* gone)
+{
+    ax_progress_part part;
+    bool nested, going = ax_form_nest(f, false, ax_progress_within(&part, progress, 0, coarse_share), &nested);
+    if (going && !nested)
+        ax_form_let_go(f);
+    *gone = coarse_share;
+    return going;
+}
+
 // Both states at rest. False if cancelled.
-static bool rest(ax_form* f, int iterations, const ax_progress* progress)
+static bool rest(ax_form* f, int iterations, bool afresh, const ax_progress* progress)
 {
     double half = ax_form_hangs(f) ? 0.5 : 1;
     bool going;
@@ -310,7 +335,7 @@ static bool rest(ax_form* f, int iterations, const ax_progress* progress)
         going = run(f, true, iterations > 0 ? iterations : FLAT_ITERATIONS,
                     iterations > 0 ? iterations : MOST_ITERATIONS, progress, 0, half);
     ax_form_measure_sides(f);
-    return going && (!ax_form_hangs(f) || load_sheet(f, iterations, progress));
+    return going && (!ax_form_hangs(f) || load_sheet(f, iterations, afresh, progress));
 }
 
 // Whether a part of a sheet that is held all the way round bulged against its load, and has turned over under it.
@@ -346,15 +371,21 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
         ax_form_restart(f, 0.05), fresh = true;
     double from = 0;
+    if (fresh || !ax_form_may_fold(f) || !ax_form_shares(f))
+        ax_form_let_go(f);
     if (fresh)
         going = start_afresh(f, iterations, progress, &from);
+    else if (f->drawn && iterations == 0)
+        going = follow_nest(f, progress, &from);
     ax_progress_part part;
     double to = fresh ? from + first_share * (1 - from) : 1;
-    going = going && rest(f, iterations, ax_progress_within(&part, progress, from, to));
+    going = going && rest(f, iterations, fresh, ax_progress_within(&part, progress, from, to));
     if (going && fresh && iterations == 0 && has_popped(f)) { // it opens again, from where it hangs
         memcpy(f->deployed, f->simulated, (size_t)n * sizeof *f->deployed);
-        going = rest(f, 0, ax_progress_within(&part, progress, to, 1));
+        going = rest(f, 0, true, ax_progress_within(&part, progress, to, (to + 1) / 2));
     }
+    if (going && fresh && ax_form_draw_to_nest(f))
+        going = rest(f, 0, true, ax_progress_within(&part, progress, (to + 1) / 2, 1));
     ax_form_leave_nest(f);
     if (going)
         f->turned = ax_form_turns_over(f);

@@ -15,7 +15,7 @@
 static const double hole_weight = 0.1, fair_weight = 0.1, held_fair_weight = 0.02, hang_fair_weight = 0.005,
                     bend_weight = 0.01, held_bend_weight = 0.002, hang_bend_weight = 0.003, wide_weight = 0.03,
                     hang_wide_weight = 0.015, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
-                    load_strain = 0.1, multiplier_cap = 2;
+                    load_strain = 0.1, multiplier_cap = 2, drawn_weight = 0.1, drawn_margin = 0.05;
 static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
 
 // Whatever yields, over what it weighs in sheets of 600 panels, those with multipliers at 1. The stiffness of folds grows with the square of
@@ -294,6 +294,27 @@ static void add_notches(const ax_form* f, ax_solver* s)
     ax_free(arms);
 }
 
+void ax_form_aim_drawn(ax_form* f)
+{
+    int n = f->lattice.linkage.hinge_count, *inner = AX_NEW(int, n), count = ax_form_list_inner(f, drawn_margin, inner);
+    for (int k = 0; k < count; ++k)
+        memcpy(f->scratch[k], f->drawn[inner[k]], sizeof *f->scratch);
+    if (f->shape_groups.drawn >= 0)
+        ax_solver_set_all(f->shape, f->shape_groups.drawn, 0, 3, f->scratch[0]);
+    ax_free(inner);
+}
+
+// As stiff over an area of the design at every number of panels. Nearer to the rim two sheets differ by their steps of panels.
+static void add_drawn(const ax_form* f, ax_solver* s, ax_form_groups* g)
+{
+    int n = f->lattice.linkage.hinge_count, *inner = AX_NEW(int, n), count = ax_form_list_inner(f, drawn_margin, inner);
+    g->drawn =
+        add(s, "closeness", 1, count, inner, n, drawn_weight * softness_of(f) / ax_form_fineness(f), NULL);
+    if (g->drawn >= 0)
+        ax_solver_set_soft(s, g->drawn, true);
+    ax_free(inner);
+}
+
 static void build_shape(ax_form* f)
 {
     const ax_linkage* linkage = &f->lattice.linkage;
@@ -303,7 +324,7 @@ static void build_shape(ax_form* f)
     sheet_places(f, f->scratch + n);
     ax_solver* s = ax_solver_make(shares ? 2 * n : n, (const double(*)[3])f->scratch, f->pool);
     ax_form_groups* g = &f->shape_groups;
-    *g = (ax_form_groups){-1, -1, -1, -1, NULL, NULL};
+    *g = (ax_form_groups){-1, -1, -1, -1, -1, NULL, NULL};
     if (shares) {
         int(*points)[12] = ax_alloc((size_t)t, sizeof *points);
         for (int k = 0; k < t; ++k) {
@@ -332,6 +353,8 @@ static void build_shape(ax_form* f)
             list_fairness(f, fair_weight, bend_weight, 0, rows);
         add_fairness(s, n, rows);
         add_holders(f, s, n, false, g);
+        if (f->drawn)
+            add_drawn(f, s, g);
     } else
         g->panels = add(s, "flat_triangle", 3, t, (const int*)linkage->triangles, 0, 1, NULL);
     g->mouths = add(s, "mouth_angle", 3, f->mouth_count, (const int*)f->mouths, 0, 1, NULL);
@@ -347,6 +370,8 @@ static void build_shape(ax_form* f)
     ax_solver_set_soft(s, g->centres, true);
     f->shape = s;
     ax_form_allow_give(f, true);
+    if (f->drawn)
+        ax_form_aim_drawn(f);
 }
 
 static void set_load_value(ax_solver* s, int load, const ax_load_type* type, const char* name, int lane, double value)
@@ -406,7 +431,7 @@ static void build_hang(ax_form* f)
     sheet_places(f, f->scratch);
     ax_solver* s = ax_solver_make(linkage->hinge_count, (const double(*)[3])f->scratch, f->pool);
     ax_form_groups* g = &f->hang_groups;
-    *g = (ax_form_groups){-1, -1, -1, -1, NULL, NULL};
+    *g = (ax_form_groups){-1, -1, -1, -1, -1, NULL, NULL};
     g->panels = add(s, "rigid_triangle", 3, linkage->triangle_count, (const int*)linkage->triangles, 0, 1, NULL);
     fair_rows rows[FAIR_KINDS];
     list_hang_fairness(f, rows);

@@ -31,9 +31,14 @@ typedef struct ax_panel_shape {
     double edge[3]; // over half the lattice spacing, edge k opposite corner k
 } ax_panel_shape;
 
+// Where a coarser sheet of the same design rests, at the hinges of this one, until this one does. NULL: it did not start there.
+typedef struct ax_form_coarse {
+    double (*deployed)[3], (*simulated)[3];
+} ax_form_coarse;
+
 // Groups of the solvers below, -1 where there is none.
 typedef struct ax_form_groups {
-    int panels, mouths, centres, holes;
+    int panels, mouths, centres, holes, drawn;
     int *rim, *held; // per rim part and per constraint
 } ax_form_groups;
 
@@ -79,10 +84,9 @@ struct ax_form {
     double growth;
     bool exact, settled;
     bool turned; // what was painted when it last settled turned over
-    // Where a coarser sheet of the same design rests, until this one does; NULL: it did not start there. Then how far from there it rests
-    // at most, over its size, and which hinge; 0: not known.
-    double (*coarse)[3];
-    double apart;
+    ax_form_coarse coarse;
+    double (*drawn)[3]; // where the deployed hinges are drawn to, since they would rest elsewhere than a coarser sheet; NULL: they are not
+    double apart;       // how far from that one it rests at most, over its size, and which hinge; 0: not known
     int apart_hinge;
     unsigned revision;
     int iterations;
@@ -207,11 +211,19 @@ void ax_form_keep_fair(const ax_form* form, ax_deploy_model* model, double scale
 // The loaded state at rest under `load`, the solver's force per area, from where the projective steps have brought it. Not balanced, and nothing
 // is changed, if it did not get there or something holds the form that Newton does not know. False if cancelled.
 bool ax_form_balance(ax_form* form, double load, const ax_progress* progress, bool* balanced);
-// Deployed states where those of a coarser sheet of the same design rest, and no multipliers; not `nested` where there is none. False if
-// cancelled.
-bool ax_form_nest(ax_form* form, const ax_progress* progress, bool* nested);
+// Finds where a coarser sheet of the same design rests. Afresh: that sheet opens, the states start where it rests, without multipliers. Else
+// it goes on from where this one is, which is drawn to where that comes to rest. Not `nested` where there is none. False if cancelled.
+bool ax_form_nest(ax_form* form, bool afresh, const ax_progress* progress, bool* nested);
+// If the sheet rests elsewhere than the coarser one: puts it back there, and draws it there from now on. False if it does not.
+bool ax_form_draw_to_nest(ax_form* form);
+// It is drawn there no longer.
+void ax_form_let_go(ax_form* form);
 // Once it rests: measures how far from where that coarser sheet did.
 void ax_form_leave_nest(ax_form* form);
+// Hinges that are further from the outline than `margin` times the sheet's radius; returns how many.
+int ax_form_list_inner(const ax_form* form, double margin, int* hinges);
+// Puts into the shape's solver where it is drawn to.
+void ax_form_aim_drawn(ax_form* form);
 // Iterations of the shape, flat and deployed, and of the loaded state; solvers are built.
 void ax_form_iterate_shape(ax_form* form, int iterations);
 void ax_form_iterate_hang(ax_form* form, int iterations);

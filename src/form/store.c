@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-static const char magic[8] = "axform08";
+static const char magic[8] = "axform09";
 enum { MOST = 100000000 }; // entries of any one array
 
 typedef struct stream {
@@ -244,6 +244,12 @@ static void body(stream* s, ax_form* f)
     REAL(s, f->apart);
     FIELD(s, f->apart_hinge);
     s->bad = s->bad || (s->reading && !(f->apart_hinge >= 0 && (size_t)f->apart_hinge < n));
+    bool drawn = f->drawn != NULL;
+    flag(s, &drawn);
+    if (drawn && !s->bad) {
+        ARRAY(s, f->drawn, n);
+        reals(s, *f->drawn, s->bad ? 0 : 3 * n);
+    }
     FIELD(s, f->revision);
     FIELD(s, f->iterations);
 
