@@ -278,12 +278,37 @@ void ax_form_free(ax_form* f)
         ax_free((void*)f->underlay_names[k]);
         ax_mesh_free(f->underlays + k);
     }
-    void* blocks[] = {f->wide,    f->centres,    f->mouths,    f->lines,    f->bends,          f->holder,
-                      f->holes,   f->prescribed, f->rim,       f->held,     f->sets,           f->underlays,
-                      f->flat,    f->deployed,   f->simulated, f->side,     f->underlay_names, f->clearances,
-                      f->pending, f->realised,   f->opening,   f->material, f->scratch,        f->lanes,
-                      f->stretch, f->pull,       f->outline,   f->panel,    f->drawn,
-                      f->coarse.deployed, f->coarse.simulated};
+    void* blocks[] = {f->wide,
+                      f->centres,
+                      f->mouths,
+                      f->lines,
+                      f->bends,
+                      f->holder,
+                      f->holes,
+                      f->prescribed,
+                      f->rim,
+                      f->held,
+                      f->sets,
+                      f->underlays,
+                      f->flat,
+                      f->deployed,
+                      f->simulated,
+                      f->side,
+                      f->underlay_names,
+                      f->clearances,
+                      f->pending,
+                      f->realised,
+                      f->opening,
+                      f->material,
+                      f->scratch,
+                      f->lanes,
+                      f->stretch,
+                      f->pull,
+                      f->outline,
+                      f->panel,
+                      f->drawn,
+                      f->coarse.deployed,
+                      f->coarse.simulated};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
     ax_free(f);

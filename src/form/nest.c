@@ -33,6 +33,13 @@ static int* nearest_hinges(const ax_form* from, const ax_sheet_map* to)
     return nearest;
 }
 
+// Without what rounding left: where there is more than one way to fold, it would choose.
+static double whole(double value, double size)
+{
+    double step = 1e9 / size;
+    return round(value * step) / step;
+}
+
 static void carry_factors(const ax_sheet_map* fine, ax_form* coarse)
 {
     const ax_form* f = fine->form;
@@ -45,35 +52,46 @@ static void carry_factors(const ax_sheet_map* fine, ax_form* coarse)
     }
     ax_sheet_map_carry(fine, (const double(*)[3])at_hinge, t, (const double(*)[2])coarse->centres, at_panel);
     for (int k = 0; k < t; ++k)
-        coarse->prescribed[k] = ax_clamp(at_panel[k][0], 1, 2);
+        coarse->prescribed[k] = ax_clamp(whole(at_panel[k][0], 1), 1, 2);
     ax_free(at_panel);
     ax_free(at_hinge);
 }
 
-// Where a coarse hinge is held: as far from its own place on the sheet as the fine ones are, in the mean, to which it is nearest.
-static void mean_places(const ax_form* f, const ax_form* coarse, int count, const int* hinges,
-                        const double (*places)[3], const int* to_coarse, double (*mean)[3], int* members)
+// How far from its place on the sheet a hinge is held.
+static void held_off(const ax_form* f, int hinge, const double place[3], double off[3])
 {
-    int coarse_count = coarse->lattice.linkage.hinge_count;
+    for (int c = 0; c < 3; ++c)
+        off[c] = place[c] - (c < 2 ? f->lattice.hinges[hinge][c] : 0);
+}
+
+// Where a coarse hinge is held: as far from its own place on the sheet as the fine ones are, in the mean, to which it is nearest; and where there
+// are none, as far as the fine one that is nearest to it.
+static void mean_places(const ax_form* f, const ax_form* coarse, int count, const int* hinges,
+                        const double (*places)[3], const int* to_coarse, const int* to_fine, double (*mean)[3])
+{
+    int coarse_count = coarse->lattice.linkage.hinge_count, *members = AX_NEW0(int, coarse_count);
+    double(*off)[3] = ax_calloc((size_t)f->lattice.linkage.hinge_count, sizeof *off);
     memset(mean, 0, (size_t)coarse_count * sizeof *mean);
-    memset(members, 0, (size_t)coarse_count * sizeof *members);
     for (int i = 0; i < count; ++i) {
         int h = to_coarse[hinges[i]];
+        held_off(f, hinges[i], places[i], off[hinges[i]]);
         ++members[h];
         for (int c = 0; c < 3; ++c)
-            mean[h][c] += (places[i][c] - (c < 2 ? f->lattice.hinges[hinges[i]][c] : 0) - mean[h][c]) / members[h];
+            mean[h][c] += (off[hinges[i]][c] - mean[h][c]) / members[h];
     }
     for (int h = 0; h < coarse_count; ++h)
-        for (int c = 0; c < 2; ++c)
-            mean[h][c] += coarse->lattice.hinges[h][c];
+        for (int c = 0; c < 3; ++c)
+            mean[h][c] = whole(members[h] ? mean[h][c] : off[to_fine[h]][c], coarse->radius) +
+                         (c < 2 ? coarse->lattice.hinges[h][c] : 0);
+    ax_free(off);
+    ax_free(members);
 }
 
 // Which part of the rim holds every coarse hinge, -1: none. That which holds the fine hinge nearest to it; and where it is nearest to one that is
 // held, so that a part reaches as far as it does on the fine sheet, and single supports stay.
-static void share_rim(const ax_sheet_map* fine, const ax_form* coarse, const int* to_coarse, int* part_of)
+static void share_rim(const ax_form* f, const ax_form* coarse, const int* to_coarse, const int* to_fine, int* part_of)
 {
-    const ax_form* f = fine->form;
-    int *to_fine = nearest_hinges(coarse, fine), *held_by = AX_NEW(int, f->lattice.linkage.hinge_count);
+    int* held_by = AX_NEW(int, f->lattice.linkage.hinge_count);
     for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
         held_by[h] = -1;
     for (int k = 0; k < f->rim_count; ++k)
@@ -85,36 +103,26 @@ static void share_rim(const ax_sheet_map* fine, const ax_form* coarse, const int
         if (held_by[h] >= 0 && part_of[to_coarse[h]] < 0)
             part_of[to_coarse[h]] = held_by[h];
     ax_free(held_by);
-    ax_free(to_fine);
 }
 
-// Every coarse hinge of the rim is held as the fine one nearest to it.
-static ax_status carry_rim(const ax_sheet_map* fine, ax_form* coarse, const int* to_coarse, ax_error* error)
+static ax_status carry_rim(const ax_form* f, ax_form* coarse, const int* to_coarse, const int* to_fine, ax_error* error)
 {
-    const ax_form* f = fine->form;
-    const ax_linkage* linkage = &coarse->lattice.linkage;
-    int n = linkage->hinge_count, *to_fine = nearest_hinges(coarse, fine), *members = AX_NEW(int, n);
-    int *part_of = AX_NEW(int, n), *place_of = AX_NEW0(int, f->lattice.linkage.hinge_count); // in its part, from 1
-    share_rim(fine, coarse, to_coarse, part_of);
+    int n = coarse->lattice.linkage.hinge_count, *part_of = AX_NEW(int, n);
     ax_rim_part* parts = AX_NEW0(ax_rim_part, f->rim_count + 1);
     double(*mean)[3] = ax_alloc((size_t)n, sizeof *mean);
+    share_rim(f, coarse, to_coarse, to_fine, part_of);
     for (int k = 0; k < f->rim_count; ++k) {
         const ax_rim_part* from = f->rim + k;
         int *hinges = AX_NEW(int, n), count = 0;
         double(*places)[3] = ax_alloc((size_t)n, sizeof *places);
-        for (int i = 0; i < from->count; ++i)
-            place_of[from->hinges[i]] = i + 1;
         if (from->kind == AX_RIM_FIXED)
-            mean_places(f, coarse, from->count, from->hinges, from->places, to_coarse, mean, members);
+            mean_places(f, coarse, from->count, from->hinges, from->places, to_coarse, to_fine, mean);
         for (int h = 0; h < n; ++h)
             if (part_of[h] == k) {
                 if (from->kind == AX_RIM_FIXED)
-                    memcpy(places[count], members[h] ? mean[h] : from->places[place_of[to_fine[h]] - 1],
-                           sizeof *places);
+                    memcpy(places[count], mean[h], sizeof *places);
                 hinges[count++] = h;
             }
-        for (int i = 0; i < from->count; ++i)
-            place_of[from->hinges[i]] = 0;
         parts[k] = (ax_rim_part){from->kind, count, hinges, (const double(*)[3])places, from->curve};
     }
     ax_status status = ax_form_set_rim(coarse, f->rim_count, parts, error);
@@ -124,23 +132,20 @@ static ax_status carry_rim(const ax_sheet_map* fine, ax_form* coarse, const int*
     }
     ax_free(mean);
     ax_free(parts);
-    ax_free(place_of);
     ax_free(part_of);
-    ax_free(members);
-    ax_free(to_fine);
     return status;
 }
 
 // Holds coarse hinges to which fine ones that are held are nearest, each once.
 static ax_status carry_constraint(const ax_form* f, const ax_form_constraint* from, ax_form* coarse,
-                                  const int* to_coarse, ax_error* error)
+                                  const int* to_coarse, const int* to_fine, ax_error* error)
 {
-    int n = coarse->lattice.linkage.hinge_count, *hinges = AX_NEW(int, from->count), *members = AX_NEW(int, n);
+    int n = coarse->lattice.linkage.hinge_count, *hinges = AX_NEW(int, from->count);
     int each = from->kind == AX_HELD_MIRROR ? 2 : from->kind == AX_HELD_ROTATION ? from->order : 1;
     unsigned char* taken = AX_NEW0(unsigned char, n);
     double(*mean)[3] = ax_alloc((size_t)n, sizeof *mean), (*places)[3] = ax_alloc((size_t)from->count, sizeof *places);
     if (from->kind == AX_HELD_FIXED)
-        mean_places(f, coarse, from->count, from->hinges, from->places, to_coarse, mean, members);
+        mean_places(f, coarse, from->count, from->hinges, from->places, to_coarse, to_fine, mean);
     ax_form_constraint c = *from;
     c.hinges = hinges;
     c.places = (const double(*)[3])places;
@@ -160,7 +165,6 @@ static ax_status carry_constraint(const ax_form* f, const ax_form_constraint* fr
     ax_free(places);
     ax_free(mean);
     ax_free(taken);
-    ax_free(members);
     ax_free(hinges);
     return status;
 }
@@ -179,11 +183,12 @@ static ax_form* coarsen(const ax_form* f, int panels)
     if (ax_form_make(&start, &coarse, &error) != AX_OK)
         return NULL;
     ax_sheet_map *from = ax_sheet_map_make(f), *to = ax_sheet_map_make(coarse);
-    int* to_coarse = nearest_hinges(f, to);
+    int *to_coarse = nearest_hinges(f, to), *to_fine = nearest_hinges(coarse, from);
     carry_factors(from, coarse);
-    ax_status status = carry_rim(from, coarse, to_coarse, &error);
+    ax_status status = carry_rim(f, coarse, to_coarse, to_fine, &error);
     for (int k = 0; k < f->held_count && status == AX_OK; ++k)
-        status = carry_constraint(f, f->held + k, coarse, to_coarse, &error);
+        status = carry_constraint(f, f->held + k, coarse, to_coarse, to_fine, &error);
+    ax_free(to_fine);
     ax_free(to_coarse);
     ax_sheet_map_free(from);
     ax_sheet_map_free(to);

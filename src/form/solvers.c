@@ -308,8 +308,7 @@ void ax_form_aim_drawn(ax_form* f)
 static void add_drawn(const ax_form* f, ax_solver* s, ax_form_groups* g)
 {
     int n = f->lattice.linkage.hinge_count, *inner = AX_NEW(int, n), count = ax_form_list_inner(f, drawn_margin, inner);
-    g->drawn =
-        add(s, "closeness", 1, count, inner, n, drawn_weight * softness_of(f) / ax_form_fineness(f), NULL);
+    g->drawn = add(s, "closeness", 1, count, inner, n, drawn_weight * softness_of(f) / ax_form_fineness(f), NULL);
     if (g->drawn >= 0)
         ax_solver_set_soft(s, g->drawn, true);
     ax_free(inner);

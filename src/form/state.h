@@ -85,8 +85,9 @@ struct ax_form {
     bool exact, settled;
     bool turned; // what was painted when it last settled turned over
     ax_form_coarse coarse;
-    double (*drawn)[3]; // where the deployed hinges are drawn to, since they would rest elsewhere than a coarser sheet; NULL: they are not
-    double apart;       // how far from that one it rests at most, over its size, and which hinge; 0: not known
+    double (*drawn)
+        [3]; // where the deployed hinges are drawn to, since they would rest elsewhere than a coarser sheet; NULL: they are not
+    double apart; // how far from that one it rests at most, over its size, and which hinge; 0: not known
     int apart_hinge;
     unsigned revision;
     int iterations;
