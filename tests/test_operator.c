@@ -1462,6 +1462,11 @@ static void a_rim_fixed_on_the_sheet_leaves_its_panels_alike(void** state)
 
 // ---- resolution --------------------------------------------------------------------------------------------------------------
 
+#define PENTAGON                                                                                                       \
+    "{\"op\": \"start_polygon\", \"sides\": 5, \"radius\": 1, \"triangles\": %d, \"scale\": 1.3}, {\"op\": "           \
+    "\"rim_fixed\"}, {\"op\": \"gravity\"}"
+#define STROKE "{\"op\": \"paint\", \"points\": [[0.3, 0.2]], \"radius\": 0.5, \"value\": 1.5}"
+
 static void results_do_not_depend_on_resolution(void** state)
 {
     (void)state;
@@ -1519,6 +1524,14 @@ static void results_do_not_depend_on_resolution(void** state)
         "{\"op\": \"start_rectangle\", \"width\": 3, \"height\": 1, \"triangles\": %d, \"scale\": 1.3}, {\"op\": "
         "\"formula\", \"formula\": \"1 + 0.3*(1 - 4*y^2)*(1 - (x/1.5)^2)\"}, {\"op\": \"rim_fixed\"}, {\"op\": "
         "\"gravity\"}",
+        // and askew to the rows of the sheet
+        PENTAGON,
+        "{\"op\": \"start_rectangle\", \"width\": 2, \"height\": 2, \"triangles\": %d, \"scale\": 1.3, \"angle\": 20}, "
+        "{\"op\": \"rim_fixed\"}, {\"op\": \"gravity\"}",
+        // strokes on sheets that hang already, one of which folds in another way then
+        PENTAGON ", " STROKE,
+        "{\"op\": \"start_rectangle\", \"width\": 3, \"height\": 1, \"triangles\": %d, \"scale\": 1.3}, {\"op\": "
+        "\"rim_rectangle\", \"width\": 3.6, \"height\": 1.2}, {\"op\": \"gravity\"}, " STROKE,
         // rims held in parts, which are told by places; under load panels of a free rim hang from two hinges and are left out
         "{\"op\": \"start_polygon\", \"sides\": 6, \"radius\": 1, \"triangles\": %d, \"scale\": 1.3}, {\"op\": "
         "\"rim_fixed\", \"hinges\": \"rim:corner1(0.1), rim:corner2(0.1), rim:corner3(0.1), rim:corner4(0.1), "
@@ -1527,7 +1540,7 @@ static void results_do_not_depend_on_resolution(void** state)
         "\"radius\": 1.15, \"hinges\": \"rim:(1,0)>(0.5,0.866), rim:(-0.5,0.866)>(-1,0), "
         "rim:(-0.5,-0.866)>(0.5,-0.866)\"}, {\"op\": \"gravity\"}",
     };
-    enum { IN_PARTS = 18 };
+    enum { IN_PARTS = 22 };
     static const double FROM_FREE_RIM = 0.1;
     size_t count = getenv("AX_QUICK") ? 0 : sizeof recipes / sizeof *recipes;
     for (size_t k = 0; k < count; ++k) {
@@ -1552,6 +1565,41 @@ static void results_do_not_depend_on_resolution(void** state)
         ax_form_free(forms[0]);
         ax_form_free(forms[1]);
     }
+}
+
+// A sheet that is drawn to where a coarser one rests takes that one along: stored, or cancelled anywhere, it goes on with the same bits.
+static void a_sheet_takes_a_coarser_one_along(void** state)
+{
+    (void)state;
+    char text[800];
+    snprintf(text, sizeof text, PENTAGON, 1000);
+    ax_form* form = play(text);
+    size_t size, again;
+    void* bytes = ax_form_save(form, &size);
+    ax_error error;
+    ax_form *settled, *cancelled;
+    assert_int_equal(ax_form_load(bytes, size, &settled, &error), AX_OK);
+    void* copy = ax_form_save(settled, &again);
+    assert_int_equal(size, again);
+    assert_memory_equal(bytes, copy, size);
+    ax_free(copy);
+    assert_int_equal(ax_operator_preview(STROKE, ".", &settled, &error), AX_OK);
+    assert_int_equal(ax_form_settle(settled, 0, NULL, &error), AX_OK);
+    size_t n = (size_t)ax_form_look(settled).linkage->hinge_count;
+    for (int calls = 2; calls <= 32; calls *= 4) { // while the coarser one settles, and after
+        int left = calls;
+        const ax_progress progress = {stop_after, &left};
+        assert_int_equal(ax_form_load(bytes, size, &cancelled, &error), AX_OK);
+        assert_int_equal(ax_operator_preview(STROKE, ".", &cancelled, &error), AX_OK);
+        assert_int_equal(ax_form_settle(cancelled, 0, &progress, &error), AX_CANCELLED);
+        assert_int_equal(ax_form_settle(cancelled, 0, NULL, &error), AX_OK);
+        assert_memory_equal(ax_form_look(cancelled).deployed, ax_form_look(settled).deployed, n * 3 * sizeof(double));
+        assert_memory_equal(ax_form_look(cancelled).simulated, ax_form_look(settled).simulated, n * 3 * sizeof(double));
+        ax_form_free(cancelled);
+    }
+    ax_free(bytes);
+    ax_form_free(form);
+    ax_form_free(settled);
 }
 
 static const ax_finding* find_kind(const ax_form_report* report, const char* kind)
@@ -1674,6 +1722,7 @@ int main(void)
         cmocka_unit_test(stretched_sheets_open_alike_in_all_directions),
         cmocka_unit_test(forms_of_several_shapes_are_told),
         cmocka_unit_test(what_holds_a_fine_sheet_is_kept_from_its_start),
+        cmocka_unit_test(a_sheet_takes_a_coarser_one_along),
         cmocka_unit_test(results_do_not_depend_on_resolution),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -311,6 +311,7 @@ void ax_form_free(ax_form* f)
                       f->coarse.simulated};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
         ax_free(blocks[k]);
+    ax_form_free(f->coarser);
     ax_free(f);
 }
 
@@ -462,6 +463,7 @@ void ax_form_changed(ax_form* f, bool rebuild, bool forget)
             ax_solver_reset_multipliers(f->hang);
     }
     f->stale = f->stale || rebuild;
+    f->outdated = f->outdated || rebuild;
 }
 
 void ax_form_prescribe(ax_form* f, const double* scale)
@@ -602,6 +604,7 @@ void ax_form_set_dynamics(ax_form* f, const ax_form_dynamics* dynamics)
         face_load(f);
     f->growth = dynamics->collisions ? f->growth : 1;
     ax_form_changed(f, kind || load, kind || load);
+    f->outdated = true;
 }
 
 const ax_form_dynamics* ax_form_get_dynamics(const ax_form* f)

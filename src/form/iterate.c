@@ -255,6 +255,14 @@ void ax_form_iterate(ax_form* f, int iterations)
 
 void ax_form_restart(ax_form* f, double height)
 {
+    ax_form_free(f->coarser);
+    f->coarser = NULL;
+    ax_form_let_go(f);
+    ax_form_open(f, height);
+}
+
+void ax_form_open(ax_form* f, double height)
+{
     int n = f->lattice.linkage.hinge_count;
     ax_form_stand stand;
     ax_form_stand_on(f, &stand);

@@ -169,7 +169,7 @@ static ax_status carry_constraint(const ax_form* f, const ax_form_constraint* fr
     return status;
 }
 
-// The same design of about `panels` panels, as laid. NULL where it holds too few for what holds it.
+// The same sheet of about `panels` panels, as laid.
 static ax_form* coarsen(const ax_form* f, int panels)
 {
     ax_form_start start = {.outline_count = f->outline_count,
@@ -182,27 +182,46 @@ static ax_form* coarsen(const ax_form* f, int panels)
     ax_error error;
     if (ax_form_make(&start, &coarse, &error) != AX_OK)
         return NULL;
-    ax_sheet_map *from = ax_sheet_map_make(f), *to = ax_sheet_map_make(coarse);
+    coarse->dynamics = f->dynamics;
+    if (ax_form_bulge(f) < 0) // so much that it goes on to that side, and still is flat
+        for (int h = 0; h < coarse->lattice.linkage.hinge_count; ++h)
+            coarse->deployed[h][2] = coarse->lattice.linkage.on_rim[h] ? 1e-9 * coarse->radius : 0;
+    return coarse;
+}
+
+// What holds the fine sheet.
+static ax_status carry_holders(const ax_form* f, ax_form* coarse, const ax_sheet_map* from)
+{
+    ax_error error;
+    ax_sheet_map* to = ax_sheet_map_make(coarse);
     int *to_coarse = nearest_hinges(f, to), *to_fine = nearest_hinges(coarse, from);
-    carry_factors(from, coarse);
+    while (coarse->held_count > 0)
+        ax_form_drop_constraint(coarse, coarse->held[coarse->held_count - 1].name);
     ax_status status = carry_rim(f, coarse, to_coarse, to_fine, &error);
     for (int k = 0; k < f->held_count && status == AX_OK; ++k)
         status = carry_constraint(f, f->held + k, coarse, to_coarse, to_fine, &error);
     ax_free(to_fine);
     ax_free(to_coarse);
-    ax_sheet_map_free(from);
     ax_sheet_map_free(to);
-    coarse->dynamics = f->dynamics;
-    coarse->mouth_min = f->mouth_min;
-    coarse->released = f->released;
-    if (status == AX_OK) {
-        if (ax_form_bulge(f) < 0) // so much that it goes on to that side, and still is flat
-            for (int h = 0; h < coarse->lattice.linkage.hinge_count; ++h)
-                coarse->deployed[h][2] = coarse->lattice.linkage.on_rim[h] ? 1e-9 * coarse->radius : 0;
-        return coarse;
+    return status;
+}
+
+// All that is asked. Not where the coarse sheet holds too few hinges for what holds it.
+static ax_status carry_asked(ax_form* f, ax_form* coarse)
+{
+    ax_status status = AX_OK;
+    ax_sheet_map* from = ax_sheet_map_make(f);
+    carry_factors(from, coarse);
+    if (f->outdated) {
+        status = carry_holders(f, coarse, from);
+        ax_form_set_dynamics(coarse, &f->dynamics);
+        if (coarse->mouth_min != f->mouth_min)
+            ax_form_set_mouth_min(coarse, f->mouth_min);
+        ax_form_release_border(coarse, f->released);
+        f->outdated = false;
     }
-    ax_form_free(coarse);
-    return NULL;
+    ax_sheet_map_free(from);
+    return status;
 }
 
 // States of a sheet at the hinges of another of the same design.
@@ -216,14 +235,7 @@ static void carry_states(const ax_form* from, const ax_form* to, double (*deploy
     ax_sheet_map_free(map);
 }
 
-static void start_at_coarse(ax_form* f)
-{
-    size_t n = (size_t)f->lattice.linkage.hinge_count;
-    memcpy(f->deployed, f->coarse.deployed, n * sizeof *f->deployed);
-    memcpy(f->simulated, f->coarse.simulated, n * sizeof *f->simulated);
-}
-
-bool ax_form_nest(ax_form* f, bool afresh, const ax_progress* progress, bool* nested)
+bool ax_form_nest(ax_form* f, const ax_progress* progress, bool* nested)
 {
     size_t n = (size_t)f->lattice.linkage.hinge_count;
     int panels = COARSEST;
@@ -232,32 +244,32 @@ bool ax_form_nest(ax_form* f, bool afresh, const ax_progress* progress, bool* ne
         return true;
     while (2 * LEVEL * panels < f->lattice.linkage.triangle_count)
         panels *= LEVEL;
-    ax_form* coarse = coarsen(f, panels);
-    if (!coarse)
-        return true;
-    if (!afresh) {
-        carry_states(f, coarse, coarse->deployed, coarse->simulated);
-        if (coarse->lattice.linkage.triangle_count >= LEAST_NESTED) // it follows one that is coarser still
-            coarse->drawn =
-                ax_copy(coarse->deployed, (size_t)coarse->lattice.linkage.hinge_count, sizeof *coarse->drawn);
+    if (!f->coarser) {
+        f->coarser = coarsen(f, panels);
+        f->outdated = true;
     }
     ax_error error;
-    ax_status status = ax_form_settle(coarse, 0, progress, &error);
+    ax_status status = f->coarser ? carry_asked(f, f->coarser) : AX_CANNOT_REALISE;
+    if (status == AX_OK)
+        status = ax_form_settle(f->coarser, 0, progress, &error);
     if (status == AX_OK) {
         f->coarse.deployed = ax_alloc(n, sizeof *f->coarse.deployed);
         f->coarse.simulated = ax_alloc(n, sizeof *f->coarse.simulated);
-        carry_states(coarse, f, f->coarse.deployed, f->coarse.simulated);
-        if (afresh) {
-            start_at_coarse(f);
-            ax_form_changed(f, false, true);
-        } else {
-            memcpy(f->drawn, f->coarse.deployed, n * sizeof *f->drawn);
-            ax_form_aim_drawn(f);
-        }
+        carry_states(f->coarser, f, f->coarse.deployed, f->coarse.simulated);
         *nested = true;
+        return true;
     }
-    ax_form_free(coarse);
+    ax_form_free(f->coarser);
+    f->coarser = NULL;
     return status != AX_CANCELLED;
+}
+
+void ax_form_start_at_nest(ax_form* f)
+{
+    size_t n = (size_t)f->lattice.linkage.hinge_count;
+    memcpy(f->deployed, f->coarse.deployed, n * sizeof *f->deployed);
+    memcpy(f->simulated, f->coarse.simulated, n * sizeof *f->simulated);
+    ax_form_changed(f, false, true);
 }
 
 int ax_form_list_inner(const ax_form* f, double margin, int* hinges)
@@ -293,6 +305,15 @@ static double away(const ax_form* f, const double (*x)[3], const double (*coarse
     return most / size;
 }
 
+// Where it is drawn to is nothing that a coarser sheet has to be told.
+static void rebuild(ax_form* f)
+{
+    bool outdated = f->outdated;
+    ax_form_changed(f, true, true);
+    f->outdated = outdated;
+    ax_form_build(f);
+}
+
 bool ax_form_draw_to_nest(ax_form* f)
 {
     static const double least = 0.01; // of the size
@@ -302,10 +323,19 @@ bool ax_form_draw_to_nest(ax_form* f)
         away(f, (const double(*)[3])f->deployed, (const double(*)[3])f->coarse.deployed, &hinge) < least)
         return false;
     f->drawn = ax_copy(f->coarse.deployed, n, sizeof *f->drawn);
-    start_at_coarse(f);
-    ax_form_changed(f, true, true);
-    ax_form_build(f);
+    rebuild(f);
+    ax_form_start_at_nest(f);
     return true;
+}
+
+void ax_form_follow_nest(ax_form* f)
+{
+    if (!f->coarse.deployed) {
+        ax_form_let_go(f);
+        return;
+    }
+    memcpy(f->drawn, f->coarse.deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->drawn);
+    ax_form_aim_drawn(f);
 }
 
 void ax_form_let_go(ax_form* f)
@@ -314,8 +344,7 @@ void ax_form_let_go(ax_form* f)
         return;
     ax_free(f->drawn);
     f->drawn = NULL;
-    ax_form_changed(f, true, true);
-    ax_form_build(f);
+    rebuild(f);
 }
 
 void ax_form_leave_nest(ax_form* f)

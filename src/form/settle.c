@@ -32,14 +32,18 @@ static const double calm_step = 2e-6;   // too slow to matter, and as slow as th
 static const double widest_turn = 0.1;  // radians, at once
 static const double coarse_share = 0.3; // of the time, where a coarser sheet settles first
 static const double first_share = 0.8;  // of what is left, where a fresh sheet may have to rest twice
+static const double far_move = 0.08;    // of the sheet's radius, by a stroke
 static const double popped = 0.1;       // of the sheet's radius, moved under load
 static const double astray = 4;         // steps so many times longer after a jump than before it: it is taken back
+static const double new_folds = 0.002;  // of the hinges
 static const char shaping[] = "Shaping the sheet", loading[] = "Loading the sheet";
 
 // States as they were before a call that is cancelled.
 typedef struct snapshot {
     double (*flat)[2], (*deployed)[3], (*simulated)[3], (*side)[3], (*drawn)[3], *multipliers, growth;
-    size_t count;
+    void* coarser;
+    size_t count, coarser_size;
+    bool outdated;
     int iterations;
 } snapshot;
 
@@ -54,6 +58,8 @@ static snapshot keep(const ax_form* f)
                   .growth = f->growth,
                   .iterations = f->iterations};
     s.multipliers = ax_form_multipliers(f, &s.count);
+    s.coarser = f->coarser ? ax_form_save(f->coarser, &s.coarser_size) : NULL;
+    s.outdated = f->outdated;
     return s;
 }
 
@@ -67,6 +73,11 @@ static void restore(ax_form* f, snapshot* s)
     ax_free(f->drawn);
     f->drawn = s->drawn;
     s->drawn = NULL;
+    ax_form_free(f->coarser);
+    f->coarser = NULL;
+    if (s->coarser)
+        ax_form_load(s->coarser, s->coarser_size, &f->coarser, NULL); // as it was saved, so it loads
+    f->outdated = s->outdated;
     f->growth = s->growth;
     f->iterations = s->iterations;
     ax_form_drop_solvers(f);
@@ -84,6 +95,7 @@ static void forget(snapshot* s)
     ax_free(s->side);
     ax_free(s->drawn);
     ax_free(s->multipliers);
+    ax_free(s->coarser);
 }
 
 static double shape_error(const ax_form* f)
@@ -296,9 +308,11 @@ static bool start_afresh(ax_form* f, int iterations, const ax_progress* progress
 {
     ax_progress_part part;
     bool nested = false;
-    if (iterations == 0 && !ax_form_nest(f, true, ax_progress_within(&part, progress, 0, coarse_share), &nested))
+    if (iterations == 0 && !ax_form_nest(f, ax_progress_within(&part, progress, 0, coarse_share), &nested))
         return false;
     *gone = nested ? coarse_share : 0;
+    if (nested)
+        ax_form_start_at_nest(f);
     // Panels that give way before the holes are open settle for a flatter shape, and leave it slowly. All of the load leans on the sheet until they
     // have given way: what is left over folds as the load has it, not as the lattice does.
     int share = iterations / 4;
@@ -311,17 +325,6 @@ static bool start_afresh(ax_form* f, int iterations, const ax_progress* progress
     }
     return !(ax_form_hangs(f) && ax_form_shares(f)) ||
            lean_on(f, iterations > 0 ? share : LEAN_ITERATIONS, progress, *gone);
-}
-
-// A sheet that is drawn to where a coarser one rests goes where that goes. False if cancelled.
-static bool follow_nest(ax_form* f, const ax_progress* progress, double* gone)
-{
-    ax_progress_part part;
-    bool nested, going = ax_form_nest(f, false, ax_progress_within(&part, progress, 0, coarse_share), &nested);
-    if (going && !nested)
-        ax_form_let_go(f);
-    *gone = coarse_share;
-    return going;
 }
 
 // Both states at rest. False if cancelled.
@@ -338,13 +341,30 @@ static bool rest(ax_form* f, int iterations, bool afresh, const ax_progress* pro
     return going && (!ax_form_hangs(f) || load_sheet(f, iterations, afresh, progress));
 }
 
+static double farthest_move(const ax_form* f, const double (*from)[3])
+{
+    double most = 0;
+    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
+        most = fmax(most, ax_distance3(from[h], f->deployed[h]));
+    return most;
+}
+
 // Whether a part of a sheet that is held all the way round bulged against its load, and has turned over under it.
 static bool has_popped(const ax_form* f)
 {
-    double moved = 0;
-    for (int h = 0; h < f->lattice.linkage.hinge_count; ++h)
-        moved = fmax(moved, ax_distance3(f->deployed[h], f->simulated[h]));
-    return moved > popped * f->radius && ax_form_hangs(f) && ax_form_shares(f) && ax_form_held_all_round(f);
+    return farthest_move(f, (const double(*)[3])f->simulated) > popped * f->radius && ax_form_hangs(f) &&
+           ax_form_shares(f) && ax_form_held_all_round(f);
+}
+
+static int count_folds(const ax_form* f)
+{
+    return ax_form_folds(f, (const double(*)[3])f->deployed, NULL);
+}
+
+// More panels are folded onto each other than a start afresh has left in corners, and would leave again.
+static bool has_folded(const ax_form* f)
+{
+    return count_folds(f) > f->folds + new_folds * f->lattice.linkage.hinge_count;
 }
 
 ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress, ax_error* error)
@@ -366,29 +386,37 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
     double lo = INFINITY, hi = -INFINITY;
     for (int h = 0; h < n; ++h)
         lo = fmin(lo, f->deployed[h][2]), hi = fmax(hi, f->deployed[h][2]);
-    bool folded = ax_form_shares(f) && (ax_form_folds(f, (const double(*)[3])f->deployed, NULL) > 0 ||
-                                        ax_form_left_over(f) || ax_form_stands_elsewhere(f));
+    bool folded = ax_form_shares(f) && (has_folded(f) || ax_form_left_over(f) || ax_form_stands_elsewhere(f));
     if (f->dynamics.kind != AX_DYNAMICS_NONE && (hi - lo < 1e-6 * f->radius || folded))
-        ax_form_restart(f, 0.05), fresh = true;
+        ax_form_open(f, 0.05), fresh = true;
     double from = 0;
     if (fresh || !ax_form_may_fold(f) || !ax_form_shares(f))
         ax_form_let_go(f);
     if (fresh)
         going = start_afresh(f, iterations, progress, &from);
-    else if (f->drawn && iterations == 0)
-        going = follow_nest(f, progress, &from);
     ax_progress_part part;
+    bool nested;
+    if (f->drawn && iterations == 0) {
+        going = ax_form_nest(f, ax_progress_within(&part, progress, 0, coarse_share), &nested);
+        if (going)
+            ax_form_follow_nest(f);
+        from = coarse_share;
+    }
     double to = fresh ? from + first_share * (1 - from) : 1;
     going = going && rest(f, iterations, fresh, ax_progress_within(&part, progress, from, to));
     if (going && fresh && iterations == 0 && has_popped(f)) { // it opens again, from where it hangs
         memcpy(f->deployed, f->simulated, (size_t)n * sizeof *f->deployed);
         going = rest(f, 0, true, ax_progress_within(&part, progress, to, (to + 1) / 2));
     }
-    if (going && fresh && ax_form_draw_to_nest(f))
+    // what has moved far may have folded in another way
+    if (going && !fresh && !f->drawn && iterations == 0 && ax_form_may_fold(f) && ax_form_shares(f) &&
+        farthest_move(f, (const double(*)[3])before.deployed) > far_move * f->radius)
+        going = ax_form_nest(f, ax_progress_within(&part, progress, to, (to + 1) / 2), &nested);
+    if (going && ax_form_draw_to_nest(f))
         going = rest(f, 0, true, ax_progress_within(&part, progress, (to + 1) / 2, 1));
     ax_form_leave_nest(f);
     if (going)
-        f->turned = ax_form_turns_over(f);
+        f->turned = ax_form_turns_over(f), f->folds = fresh ? count_folds(f) : f->folds;
     else
         restore(f, &before), f->apart = 0;
     forget(&before);

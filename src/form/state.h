@@ -83,7 +83,10 @@ struct ax_form {
     double (*side)[3]; // edge k of each panel, opposite corner k: what the load pass keeps
     double growth;
     bool exact, settled;
-    bool turned; // what was painted when it last settled turned over
+    bool turned;      // what was painted when it last settled turned over
+    int folds;        // pairs of panels that were folded onto each other when it last had opened afresh
+    ax_form* coarser; // the same design in fewer panels, as it last rested; NULL: there is none yet
+    bool outdated;    // it has not got this one's rim, constraints or dynamics yet
     ax_form_coarse coarse;
     double (*drawn)
         [3]; // where the deployed hinges are drawn to, since they would rest elsewhere than a coarser sheet; NULL: they are not
@@ -212,11 +215,16 @@ void ax_form_keep_fair(const ax_form* form, ax_deploy_model* model, double scale
 // The loaded state at rest under `load`, the solver's force per area, from where the projective steps have brought it. Not balanced, and nothing
 // is changed, if it did not get there or something holds the form that Newton does not know. False if cancelled.
 bool ax_form_balance(ax_form* form, double load, const ax_progress* progress, bool* balanced);
-// Finds where a coarser sheet of the same design rests. Afresh: that sheet opens, the states start where it rests, without multipliers. Else
-// it goes on from where this one is, which is drawn to where that comes to rest. Not `nested` where there is none. False if cancelled.
-bool ax_form_nest(ax_form* form, bool afresh, const ax_progress* progress, bool* nested);
+// The deployed state, over the sheet, as a shallow dome of this height over the radius; no multipliers.
+void ax_form_open(ax_form* form, double height);
+// Brings a coarser sheet of the same design to rest, from where it last rested. Not `nested` where there is none. False if cancelled.
+bool ax_form_nest(ax_form* form, const ax_progress* progress, bool* nested);
+// The states start where that one rests, without multipliers.
+void ax_form_start_at_nest(ax_form* form);
 // If the sheet rests elsewhere than the coarser one: puts it back there, and draws it there from now on. False if it does not.
 bool ax_form_draw_to_nest(ax_form* form);
+// A sheet that is drawn there is drawn to where it rests now.
+void ax_form_follow_nest(ax_form* form);
 // It is drawn there no longer.
 void ax_form_let_go(ax_form* form);
 // Once it rests: measures how far from where that coarser sheet did.

@@ -1,6 +1,7 @@
 // A form as bytes: a magic number, a version, every field in order, and a checksum. Little-endian, as the document's arrays are.
 #include "form/state.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -222,6 +223,27 @@ static void dynamics(stream* s, ax_form_dynamics* d)
     flag(s, &d->collisions);
 }
 
+static ax_status load(const void* bytes, size_t size, int most, ax_form** out, ax_error* error);
+
+// The coarser sheet, itself as bytes.
+static void coarser(stream* s, ax_form* f)
+{
+    bool any = f->coarser != NULL;
+    flag(s, &any);
+    flag(s, &f->outdated);
+    s->bad = s->bad || (any && f->outline_count == 0);
+    if (!any || s->bad)
+        return;
+    size_t size = 0;
+    void* bytes = s->reading ? NULL : ax_form_save(f->coarser, &size);
+    uint64_t length = size;
+    FIELD(s, length);
+    bytes = array(s, bytes, length, 1);
+    if (s->reading && !s->bad)
+        s->bad = load(bytes, length, f->lattice.linkage.triangle_count / 4 * 3, &f->coarser, NULL) != AX_OK;
+    ax_free(bytes);
+}
+
 static void body(stream* s, ax_form* f)
 {
     size_t n = (size_t)f->lattice.linkage.hinge_count, t = (size_t)f->lattice.linkage.triangle_count;
@@ -241,15 +263,18 @@ static void body(stream* s, ax_form* f)
     flag(s, &f->exact);
     flag(s, &f->settled);
     flag(s, &f->turned);
+    FIELD(s, f->folds);
     REAL(s, f->apart);
     FIELD(s, f->apart_hinge);
     s->bad = s->bad || (s->reading && !(f->apart_hinge >= 0 && (size_t)f->apart_hinge < n));
     bool drawn = f->drawn != NULL;
     flag(s, &drawn);
+    s->bad = s->bad || (drawn && f->outline_count == 0);
     if (drawn && !s->bad) {
         ARRAY(s, f->drawn, n);
         reals(s, *f->drawn, s->bad ? 0 : 3 * n);
     }
+    coarser(s, f);
     FIELD(s, f->revision);
     FIELD(s, f->iterations);
 
@@ -318,7 +343,8 @@ static ax_status damaged(ax_error* error)
     return ax_fail(error, AX_BAD_INPUT, "The stored form is damaged or was written by another version.");
 }
 
-ax_status ax_form_load(const void* bytes, size_t size, ax_form** out, ax_error* error)
+// A form of at most so many panels.
+static ax_status load(const void* bytes, size_t size, int most, ax_form** out, ax_error* error)
 {
     *out = NULL;
     uint64_t sum;
@@ -332,7 +358,7 @@ ax_status ax_form_load(const void* bytes, size_t size, ax_form** out, ax_error* 
     ax_lattice sheet = {0};
     CHOICE(&s, unit, AX_METRE);
     lattice(&s, &sheet);
-    if (s.bad || ax_linkage_check(&sheet.linkage, NULL) != AX_OK) {
+    if (s.bad || sheet.linkage.triangle_count > most || ax_linkage_check(&sheet.linkage, NULL) != AX_OK) {
         ax_lattice_free(&sheet);
         return damaged(error);
     }
@@ -357,4 +383,9 @@ ax_status ax_form_load(const void* bytes, size_t size, ax_form** out, ax_error* 
     }
     *out = f;
     return AX_OK;
+}
+
+ax_status ax_form_load(const void* bytes, size_t size, ax_form** out, ax_error* error)
+{
+    return load(bytes, size, INT_MAX, out, error);
 }
