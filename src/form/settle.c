@@ -260,33 +260,31 @@ static bool come_to_rest(ax_form* f, const ax_progress* progress, double lo, dou
            (ax_form_simulated_error(f) > balance_error || ax_form_balance(f, load, rest, balanced));
 }
 
-// The load comes upon the open shape, whose edges are right.
-static void load_open_shape(ax_form* f)
+static void load_from(ax_form* f, const double (*x)[3])
 {
-    memcpy(f->simulated, f->deployed, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
+    memcpy(f->simulated, x, (size_t)f->lattice.linkage.hinge_count * sizeof *f->simulated);
     ax_solver_reset_multipliers(f->hang);
 }
 
-// For given iterations; 0: until forces are in balance. From where it is, so that slack parts stay as they lie, or afresh from the open
-// shape. False if cancelled.
+// For given iterations; 0: until forces are in balance. From where it is, so that slack parts stay as they lie, or afresh from the open shape,
+// whose edges are right; where it does not rest from the one, from the other. False if cancelled.
 static bool load_sheet(ax_form* f, int iterations, bool afresh, const ax_progress* progress)
 {
     if (iterations > 0)
         return run(f, false, iterations, iterations, progress, 0.5, 1);
-    afresh = afresh && ax_form_shares(f);
-    if (afresh)
-        load_open_shape(f);
-    bool balanced;
-    if (!come_to_rest(f, progress, 0.5, 0.65, &balanced))
-        return false;
-    if (ax_form_shares(f) && shape_error(f) > good_error) // nor can it be right under load
-        return true;
-    if (!balanced && !afresh && ax_form_shares(f)) {
-        load_open_shape(f);
-        if (!come_to_rest(f, progress, 0.65, 0.8, &balanced))
-            return false;
+    bool shares = ax_form_shares(f), balanced;
+    double(*other)[3] =
+        ax_copy(afresh ? f->simulated : f->deployed, (size_t)f->lattice.linkage.hinge_count, sizeof *other);
+    if (afresh && shares)
+        load_from(f, (const double(*)[3])f->deployed);
+    bool going = come_to_rest(f, progress, 0.5, 0.65, &balanced),
+         right = !shares || shape_error(f) <= good_error; // else nor can it be under load
+    if (going && !balanced && shares && right) {
+        load_from(f, (const double(*)[3])other);
+        going = come_to_rest(f, progress, 0.65, 0.8, &balanced);
     }
-    return balanced || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, progress, 0.8, 1);
+    ax_free(other);
+    return going && (balanced || !right || run(f, false, LOAD_ITERATIONS, MOST_ITERATIONS, progress, 0.8, 1));
 }
 
 // Iterations of the shape under all of its load. False if cancelled.
