@@ -323,6 +323,17 @@ bool ax_form_draw_to_nest(ax_form* f)
         away(f, (const double(*)[3])f->deployed, (const double(*)[3])f->coarse.deployed, &hinge) < least)
         return false;
     f->drawn = ax_copy(f->coarse.deployed, n, sizeof *f->drawn);
+    f->lightly = false;
+    rebuild(f);
+    ax_form_start_at_nest(f);
+    return true;
+}
+
+bool ax_form_draw_lightly(ax_form* f)
+{
+    if (!f->drawn || !f->coarse.deployed || f->lightly)
+        return false;
+    f->lightly = true;
     rebuild(f);
     ax_form_start_at_nest(f);
     return true;

@@ -43,7 +43,7 @@ typedef struct snapshot {
     double (*flat)[2], (*deployed)[3], (*simulated)[3], (*side)[3], (*drawn)[3], *multipliers, growth;
     void* coarser;
     size_t count, coarser_size;
-    bool outdated;
+    bool outdated, lightly;
     int iterations;
 } snapshot;
 
@@ -60,6 +60,7 @@ static snapshot keep(const ax_form* f)
     s.multipliers = ax_form_multipliers(f, &s.count);
     s.coarser = f->coarser ? ax_form_save(f->coarser, &s.coarser_size) : NULL;
     s.outdated = f->outdated;
+    s.lightly = f->lightly;
     return s;
 }
 
@@ -78,6 +79,7 @@ static void restore(ax_form* f, snapshot* s)
     if (s->coarser)
         ax_form_load(s->coarser, s->coarser_size, &f->coarser, NULL); // as it was saved, so it loads
     f->outdated = s->outdated;
+    f->lightly = s->lightly;
     f->growth = s->growth;
     f->iterations = s->iterations;
     ax_form_drop_solvers(f);
@@ -411,6 +413,10 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
         farthest_move(f, (const double(*)[3])before.deployed) > far_move * f->radius)
         going = ax_form_nest(f, ax_progress_within(&part, progress, to, (to + 1) / 2), &nested);
     if (going && ax_form_draw_to_nest(f))
+        going = rest(f, 0, true, ax_progress_within(&part, progress, (to + 1) / 2, 1));
+    // where the coarser sheet's edges are right, this one's can be
+    if (going && f->drawn && iterations == 0 && shape_error(f) > good_error && shape_error(f->coarser) <= good_error &&
+        ax_form_draw_lightly(f))
         going = rest(f, 0, true, ax_progress_within(&part, progress, (to + 1) / 2, 1));
     ax_form_leave_nest(f);
     if (going)

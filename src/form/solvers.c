@@ -15,7 +15,8 @@
 static const double hole_weight = 0.1, fair_weight = 0.1, held_fair_weight = 0.02, hang_fair_weight = 0.005,
                     bend_weight = 0.01, held_bend_weight = 0.002, hang_bend_weight = 0.003, wide_weight = 0.03,
                     hang_wide_weight = 0.015, rim_weight = 0.3, hang_rim_weight = 1, centre_weight = 0.3,
-                    load_strain = 0.1, multiplier_cap = 2, drawn_weight = 0.1, drawn_margin = 0.05;
+                    load_strain = 0.1, multiplier_cap = 2, drawn_weight = 0.05, light_weight = 0.015,
+                    drawn_margin = 0.07;
 static const double border_lo = 0.6, border_hi = 1.4, border_skew = 0.35;
 
 // Whatever yields, over what it weighs in sheets of 600 panels, those with multipliers at 1. The stiffness of folds grows with the square of
@@ -308,7 +309,8 @@ void ax_form_aim_drawn(ax_form* f)
 static void add_drawn(const ax_form* f, ax_solver* s, ax_form_groups* g)
 {
     int n = f->lattice.linkage.hinge_count, *inner = AX_NEW(int, n), count = ax_form_list_inner(f, drawn_margin, inner);
-    g->drawn = add(s, "closeness", 1, count, inner, n, drawn_weight * softness_of(f) / ax_form_fineness(f), NULL);
+    g->drawn = add(s, "closeness", 1, count, inner, n,
+                   (f->lightly ? light_weight : drawn_weight) * softness_of(f) / ax_form_fineness(f), NULL);
     if (g->drawn >= 0)
         ax_solver_set_soft(s, g->drawn, true);
     ax_free(inner);

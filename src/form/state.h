@@ -88,8 +88,10 @@ struct ax_form {
     ax_form* coarser; // the same design in fewer panels, as it last rested; NULL: there is none yet
     bool outdated;    // it has not got this one's rim, constraints or dynamics yet
     ax_form_coarse coarse;
-    double (*drawn)
-        [3]; // where the deployed hinges are drawn to, since they would rest elsewhere than a coarser sheet; NULL: they are not
+    // Where the deployed hinges are drawn to, since they would rest elsewhere than a coarser sheet; NULL: they are not. Lightly: a fifth as
+    // much, since edges would not be right there.
+    double (*drawn)[3];
+    bool lightly;
     double apart; // how far from that one it rests at most, over its size, and which hinge; 0: not known
     int apart_hinge;
     unsigned revision;
@@ -223,6 +225,8 @@ bool ax_form_nest(ax_form* form, const ax_progress* progress, bool* nested);
 void ax_form_start_at_nest(ax_form* form);
 // If the sheet rests elsewhere than the coarser one: puts it back there, and draws it there from now on. False if it does not.
 bool ax_form_draw_to_nest(ax_form* form);
+// Draws it there lightly, from there again. False if it is drawn lightly already, or not at all.
+bool ax_form_draw_lightly(ax_form* form);
 // A sheet that is drawn there is drawn to where it rests now.
 void ax_form_follow_nest(ax_form* form);
 // It is drawn there no longer.

@@ -274,6 +274,7 @@ static void body(stream* s, ax_form* f)
         ARRAY(s, f->drawn, n);
         reals(s, *f->drawn, s->bad ? 0 : 3 * n);
     }
+    flag(s, &f->lightly);
     coarser(s, f);
     FIELD(s, f->revision);
     FIELD(s, f->iterations);
