@@ -367,6 +367,24 @@ static bool has_folded(const ax_form* f)
     return count_folds(f) > f->folds + new_folds * f->lattice.linkage.hinge_count;
 }
 
+// A sheet that rests elsewhere than the coarser one goes back to where that does, and is drawn to it. `from`: where it was before a stroke,
+// NULL: it started afresh. False if cancelled.
+static bool keep_to_nest(ax_form* f, const double (*from)[3], const ax_progress* progress)
+{
+    ax_progress_part part;
+    bool nested, going = true;
+    // what has moved far may have folded in another way
+    if (from && !f->drawn && ax_form_may_fold(f) && ax_form_shares(f) && farthest_move(f, from) > far_move * f->radius)
+        going = ax_form_nest(f, ax_progress_within(&part, progress, 0, coarse_share), &nested);
+    if (going && ax_form_draw_to_nest(f))
+        going = rest(f, 0, true, ax_progress_within(&part, progress, coarse_share, 0.65));
+    // where the coarser sheet's edges are right, this one's can be
+    if (going && f->drawn && shape_error(f) > good_error && shape_error(f->coarser) <= good_error &&
+        ax_form_draw_lightly(f))
+        going = rest(f, 0, true, ax_progress_within(&part, progress, 0.65, 1));
+    return going;
+}
+
 ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress, ax_error* error)
 {
     int n = f->lattice.linkage.hinge_count;
@@ -408,16 +426,9 @@ ax_status ax_form_settle(ax_form* f, int iterations, const ax_progress* progress
         memcpy(f->deployed, f->simulated, (size_t)n * sizeof *f->deployed);
         going = rest(f, 0, true, ax_progress_within(&part, progress, to, (to + 1) / 2));
     }
-    // what has moved far may have folded in another way
-    if (going && !fresh && !f->drawn && iterations == 0 && ax_form_may_fold(f) && ax_form_shares(f) &&
-        farthest_move(f, (const double(*)[3])before.deployed) > far_move * f->radius)
-        going = ax_form_nest(f, ax_progress_within(&part, progress, to, (to + 1) / 2), &nested);
-    if (going && ax_form_draw_to_nest(f))
-        going = rest(f, 0, true, ax_progress_within(&part, progress, (to + 1) / 2, 1));
-    // where the coarser sheet's edges are right, this one's can be
-    if (going && f->drawn && iterations == 0 && shape_error(f) > good_error && shape_error(f->coarser) <= good_error &&
-        ax_form_draw_lightly(f))
-        going = rest(f, 0, true, ax_progress_within(&part, progress, (to + 1) / 2, 1));
+    if (going && iterations == 0)
+        going = keep_to_nest(f, fresh ? NULL : (const double(*)[3])before.deployed,
+                             ax_progress_within(&part, progress, (to + 1) / 2, 1));
     ax_form_leave_nest(f);
     if (going)
         f->turned = ax_form_turns_over(f), f->folds = fresh ? count_folds(f) : f->folds;

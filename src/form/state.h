@@ -88,8 +88,8 @@ struct ax_form {
     ax_form* coarser; // the same design in fewer panels, as it last rested; NULL: there is none yet
     bool outdated;    // it has not got this one's rim, constraints or dynamics yet
     ax_form_coarse coarse;
-    // Where the deployed hinges are drawn to, since they would rest elsewhere than a coarser sheet; NULL: they are not. Lightly: a fifth as
-    // much, since edges would not be right there.
+    // Where the deployed hinges are drawn to, since they would rest elsewhere than a coarser sheet; NULL: they are not. Lightly: by softer
+    // springs, since edges would not be right there.
     double (*drawn)[3];
     bool lightly;
     double apart; // how far from that one it rests at most, over its size, and which hinge; 0: not known
