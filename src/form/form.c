@@ -463,7 +463,8 @@ void ax_form_changed(ax_form* f, bool rebuild, bool forget)
             ax_solver_reset_multipliers(f->hang);
     }
     f->stale = f->stale || rebuild;
-    f->outdated = f->outdated || rebuild;
+    if (rebuild)
+        f->outdated = true, f->folds = 0; // what a start afresh leaves is not known any more
 }
 
 void ax_form_prescribe(ax_form* f, const double* scale)

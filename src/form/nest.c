@@ -309,8 +309,9 @@ static double away(const ax_form* f, const double (*x)[3], const double (*coarse
 static void rebuild(ax_form* f)
 {
     bool outdated = f->outdated;
+    int folds = f->folds;
     ax_form_changed(f, true, true);
-    f->outdated = outdated;
+    f->outdated = outdated, f->folds = folds;
     ax_form_build(f);
 }
 
