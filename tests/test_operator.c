@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "base/vec.h"
+#include "form/state.h"
 #include "operator/brush.h"
 #include "operator/scale_field.h"
 #include "operator/selection.h"
@@ -1567,6 +1568,51 @@ static void results_do_not_depend_on_resolution(void** state)
     }
 }
 
+// Sides, outlines and arcs: the ends of a part, and rims where no fine hinge is nearest to a coarse one, included.
+static void a_coarser_sheet_is_held_as_one_of_600_panels_is(void** state)
+{
+    (void)state;
+    static const char* const recipes[] = {
+        "{\"op\": \"start_rectangle\", \"width\": 2, \"height\": 2, \"triangles\": %d, \"scale\": 1.3}, {\"op\": "
+        "\"rim_fixed\", \"hinges\": \"rim:side1, rim:side3\"}, {\"op\": \"gravity\", \"steps\": %d}",
+        "{\"op\": \"start_outline\", \"points\": [[1.4, 0], [1.2124, 0.45], [0.7, 0.7794], [0, 0.9], [-0.7, 0.7794], "
+        "[-1.2124, 0.45], [-1.4, 0], [-1.2124, -0.45], [-0.7, -0.7794], [0, -0.9], [0.7, -0.7794], [1.2124, -0.45]], "
+        "\"triangles\": %d, \"scale\": 1.3}, {\"op\": \"rim_fixed\"}, {\"op\": \"inflation\", \"steps\": %d}",
+        "{\"op\": \"start_circle\", \"radius\": 1, \"triangles\": %d, \"scale\": 1.3}, {\"op\": \"rim_circle\", "
+        "\"radius\": 1.15, \"hinges\": \"rim:(1,0)>(0.5,0.866), rim:(-0.5,0.866)>(-1,0)\"}, {\"op\": \"gravity\", "
+        "\"steps\": %d}",
+    };
+    enum { TO_REST = 0, HARDLY = 1 };
+    for (size_t k = 0; k < sizeof recipes / sizeof *recipes; ++k) {
+        char text[800];
+        snprintf(text, sizeof text, recipes[k], 1200, TO_REST);
+        ax_form* fine = play(text);
+        snprintf(text, sizeof text, recipes[k], 600, HARDLY);
+        ax_form* same = play(text);
+        const ax_form* coarse = fine->coarser;
+        assert_non_null(coarse);
+        int n = same->lattice.linkage.hinge_count, t = same->lattice.linkage.triangle_count;
+        assert_int_equal(coarse->lattice.linkage.hinge_count, n);
+        assert_memory_equal(coarse->prescribed, same->prescribed, (size_t)t * sizeof *same->prescribed);
+        assert_int_equal(coarse->rim_count, same->rim_count);
+        for (int part = 0; part < same->rim_count; ++part) {
+            const ax_rim_part *a = coarse->rim + part, *b = same->rim + part;
+            assert_int_equal(a->count, b->count);
+            int* at = AX_NEW0(int, n); // in the part of the other, from 1
+            for (int i = 0; i < b->count; ++i)
+                at[b->hinges[i]] = i + 1;
+            for (int i = 0; i < a->count; ++i) {
+                assert_true(at[a->hinges[i]] > 0);
+                if (a->kind == AX_RIM_FIXED)
+                    assert_at_most(ax_distance3(a->places[i], b->places[at[a->hinges[i]] - 1]), 1e-9);
+            }
+            ax_free(at);
+        }
+        ax_form_free(fine);
+        ax_form_free(same);
+    }
+}
+
 // A sheet that is drawn to where a coarser one rests takes that one along: stored, or cancelled anywhere, it goes on with the same bits.
 static void a_sheet_takes_a_coarser_one_along(void** state)
 {
@@ -1574,6 +1620,8 @@ static void a_sheet_takes_a_coarser_one_along(void** state)
     char text[800];
     snprintf(text, sizeof text, PENTAGON, 1000);
     ax_form* form = play(text);
+    assert_non_null(form->coarser);
+    assert_non_null(form->drawn);
     size_t size, again;
     void* bytes = ax_form_save(form, &size);
     ax_error error;
@@ -1722,6 +1770,7 @@ int main(void)
         cmocka_unit_test(stretched_sheets_open_alike_in_all_directions),
         cmocka_unit_test(forms_of_several_shapes_are_told),
         cmocka_unit_test(what_holds_a_fine_sheet_is_kept_from_its_start),
+        cmocka_unit_test(a_coarser_sheet_is_held_as_one_of_600_panels_is),
         cmocka_unit_test(a_sheet_takes_a_coarser_one_along),
         cmocka_unit_test(results_do_not_depend_on_resolution),
     };

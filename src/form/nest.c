@@ -1,6 +1,6 @@
-// A fresh start of many panels: where a coarser sheet of the same design has come to rest. What is left over between rims folds in more
-// than one way, and which way is told by how the sheet opens. A sheet that starts where a coarser one ended folds as that one does, so
-// that shapes do not depend on the number of panels.
+// A coarser sheet of the same design, which a sheet of many panels keeps. What is left over between rims folds in more than one way, and which
+// way is told by how the sheet opens and by every stroke since. A sheet that starts where a coarser one rests, and is drawn there
+// where it would rest elsewhere, folds as that one does, so that shapes do not depend on the number of panels.
 #include "form/map.h"
 
 #include "base/vec.h"
@@ -57,13 +57,6 @@ static void carry_factors(const ax_sheet_map* fine, ax_form* coarse)
     ax_free(at_hinge);
 }
 
-// How far from its place on the sheet a hinge is held.
-static void held_off(const ax_form* f, int hinge, const double place[3], double off[3])
-{
-    for (int c = 0; c < 3; ++c)
-        off[c] = place[c] - (c < 2 ? f->lattice.hinges[hinge][c] : 0);
-}
-
 // Where a coarse hinge is held: as far from its own place on the sheet as the fine ones are, in the mean, to which it is nearest; and where there
 // are none, as far as the fine one that is nearest to it.
 static void mean_places(const ax_form* f, const ax_form* coarse, int count, const int* hinges,
@@ -73,11 +66,12 @@ static void mean_places(const ax_form* f, const ax_form* coarse, int count, cons
     double(*off)[3] = ax_calloc((size_t)f->lattice.linkage.hinge_count, sizeof *off);
     memset(mean, 0, (size_t)coarse_count * sizeof *mean);
     for (int i = 0; i < count; ++i) {
-        int h = to_coarse[hinges[i]];
-        held_off(f, hinges[i], places[i], off[hinges[i]]);
+        int from = hinges[i], h = to_coarse[from];
         ++members[h];
-        for (int c = 0; c < 3; ++c)
-            mean[h][c] += (off[hinges[i]][c] - mean[h][c]) / members[h];
+        for (int c = 0; c < 3; ++c) {
+            off[from][c] = places[i][c] - (c < 2 ? f->lattice.hinges[from][c] : 0);
+            mean[h][c] += (off[from][c] - mean[h][c]) / members[h];
+        }
     }
     for (int h = 0; h < coarse_count; ++h)
         for (int c = 0; c < 3; ++c)
@@ -332,7 +326,7 @@ bool ax_form_draw_to_nest(ax_form* f)
 
 bool ax_form_draw_lightly(ax_form* f)
 {
-    if (!f->drawn || !f->coarse.deployed || f->lightly)
+    if (!f->drawn || f->lightly)
         return false;
     f->lightly = true;
     rebuild(f);

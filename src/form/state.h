@@ -31,7 +31,7 @@ typedef struct ax_panel_shape {
     double edge[3]; // over half the lattice spacing, edge k opposite corner k
 } ax_panel_shape;
 
-// Where a coarser sheet of the same design rests, at the hinges of this one, until this one does. NULL: it did not start there.
+// Where a coarser sheet of the same design rests, at the hinges of this one, while this one settles. NULL: it was not asked.
 typedef struct ax_form_coarse {
     double (*deployed)[3], (*simulated)[3];
 } ax_form_coarse;
