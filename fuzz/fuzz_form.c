@@ -1,5 +1,5 @@
 // Stored forms changed at random, with a checksum that fits: what loads can be looked at, solved on and stored again.
-#include "ax/form.h"
+#include "form/state.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -9,8 +9,13 @@
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 int LLVMFuzzerInitialize(int* argc, char*** argv);
 
-static unsigned char* original;
-static size_t original_size;
+typedef struct stored {
+    unsigned char* bytes;
+    size_t size;
+    size_t inner, inner_size; // where the bytes of a coarser sheet are, if there is one
+} stored;
+
+static stored originals[2];
 
 static void promise(bool kept)
 {
@@ -18,7 +23,22 @@ static void promise(bool kept)
         abort();
 }
 
-// Holds something of every kind that a form stores.
+static stored put_away(ax_form* form)
+{
+    stored s = {0};
+    s.bytes = ax_form_save(form, &s.size);
+    ax_form_free(form);
+    unsigned char* inner =
+        memmem(s.bytes + 8, s.size - 8, s.bytes, 8); // begins as all stored forms do, after its length
+    if (inner) {
+        uint64_t length;
+        memcpy(&length, inner - sizeof length, sizeof length);
+        s.inner = (size_t)(inner - s.bytes), s.inner_size = length;
+    }
+    return s;
+}
+
+// The first holds something of every kind that a form stores but a coarser sheet, the second that.
 int LLVMFuzzerInitialize(int* argc, char*** argv)
 {
     (void)argc, (void)argv;
@@ -54,8 +74,12 @@ int LLVMFuzzerInitialize(int* argc, char*** argv)
     dynamics.load.kind = AX_LOAD_INFLATION, dynamics.load.pressure = 100;
     ax_form_set_dynamics(form, &dynamics);
     ax_form_iterate(form, 5);
-    original = ax_form_save(form, &original_size);
-    ax_form_free(form);
+    originals[0] = put_away(form);
+    bool kept;
+    promise(ax_form_make(&(ax_form_start){4, outline, 950, 0, 1.2, 0, false, AX_METRE}, &form, NULL) == AX_OK);
+    promise(ax_form_nest(form, NULL, &kept) && kept);
+    originals[1] = put_away(form);
+    promise(originals[1].inner_size > 0);
     return 0;
 }
 
@@ -77,6 +101,10 @@ static void use(ax_form* form)
     ax_form_snapshot(form, false, &design);
     ax_design_free(&design);
     ax_form_iterate(form, 2);
+}
+
+static void keep(const ax_form* form)
+{
     size_t size, again_size;
     void* bytes = ax_form_save(form, &size);
     ax_form* again;
@@ -89,16 +117,52 @@ static void use(ax_form* form)
     ax_free(bytes);
 }
 
-// Six bytes an edit: place, what is done, value. Then, rarely, some bytes fewer.
+static void seal(unsigned char* bytes, size_t size)
+{
+    uint64_t sum = checksum(bytes, size - sizeof sum);
+    memcpy(bytes + size - sizeof sum, &sum, sizeof sum);
+}
+
+static ax_form* load(const unsigned char* bytes, size_t size)
+{
+    unsigned char* exact = malloc(size); // so that the sanitizer sees a byte too far
+    memcpy(exact, bytes, size);
+    ax_form* form;
+    bool loaded = ax_form_load(exact, size, &form, NULL) == AX_OK;
+    free(exact);
+    return loaded ? form : NULL;
+}
+
+// No count makes room for more than the bytes can hold, wherever it stands: what asks for 2 GB is ended by libFuzzer.
+static void count_too_much(const stored* original)
+{
+    const int many = 100000000;
+    unsigned char* bytes = malloc(original->size);
+    for (size_t at = 8; at + sizeof many + 8 <= original->size; ++at) {
+        if (original->bytes[at + 2] || original->bytes[at + 3])
+            continue; // not a count
+        memcpy(bytes, original->bytes, original->size);
+        memcpy(bytes + at, &many, sizeof many);
+        seal(bytes, original->size);
+        ax_form_free(load(bytes, original->size));
+    }
+    free(bytes);
+}
+
+// A byte, n for the nested form, then six bytes an edit: place, what is done, value. Then, rarely, some bytes fewer.
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 {
-    unsigned char* bytes = malloc(original_size);
-    memcpy(bytes, original, original_size);
-    size_t length = original_size - 8;
-    for (; size >= 6; data += 6, size -= 6) {
+    if (size == 0) {
+        count_too_much(originals);
+        return 0;
+    }
+    stored s = originals[*data++ == 'n'];
+    unsigned char* bytes = malloc(s.size);
+    memcpy(bytes, s.bytes, s.size);
+    for (--size; size >= 6; data += 6, size -= 6) {
         uint32_t place;
         memcpy(&place, data, sizeof place);
-        size_t at = 8 + place % (original_size - 24);
+        size_t at = 8 + place % (s.size - 24);
         static const double numbers[] = {NAN, INFINITY, -1e300, 1e-300, 0, -1, 1e9};
         static const int counts[] = {-1, 0, 1, 2147483647, 100000000, 1000};
         if (data[4] % 4 == 0)
@@ -108,18 +172,18 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
         else
             bytes[at] = data[5];
     }
+    if (s.inner)
+        seal(bytes + s.inner, s.inner_size);
     if (size == 5)
-        length -= data[0];
-    uint64_t sum = checksum(bytes, length);
-    memcpy(bytes + length, &sum, sizeof sum);
-    unsigned char* exact = malloc(length + 8); // so that the sanitizer sees a byte too far
-    memcpy(exact, bytes, length + 8);
-    ax_form* form;
-    if (ax_form_load(exact, length + 8, &form, NULL) == AX_OK) {
-        use(form);
+        s.size -= data[0];
+    seal(bytes, s.size);
+    ax_form* form = load(bytes, s.size);
+    if (form) {
+        if (!s.inner) // of 950 panels would take long
+            use(form);
+        keep(form);
         ax_form_free(form);
     }
-    free(exact);
     free(bytes);
     return 0;
 }

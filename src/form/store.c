@@ -7,7 +7,8 @@
 #include <string.h>
 
 static const char magic[8] = "axform09";
-enum { MOST = 100000000 }; // entries of any one array
+enum { MOST = 100000000 };                                      // entries of any one array
+enum { RIM_PART = 8, CONSTRAINT = 73, SET = 8, UNDERLAY = 20 }; // the fewest bytes that one of these takes
 
 typedef struct stream {
     unsigned char* bytes;
@@ -56,10 +57,11 @@ static void* array(stream* s, const void* data, size_t count, size_t size)
 
 #define ARRAY(s, pointer, count) ((pointer) = array(s, pointer, (size_t)(count), sizeof *(pointer)))
 
-static void counted(stream* s, int* count, int least)
+// How many things follow that take at least `each` bytes, so that no more is allocated than the bytes given can fill.
+static void counted(stream* s, int* count, int least, size_t each)
 {
     raw(s, count, sizeof *count);
-    if (*count < least || *count > MOST)
+    if (*count < least || *count > MOST || (s->reading && (size_t)*count > (s->size - s->at) / each))
         s->bad = true, *count = 0;
 }
 
@@ -100,7 +102,7 @@ static void indices(stream* s, const int* list, int count, int limit)
 static void text(stream* s, const char** value)
 {
     int length = s->reading ? 0 : (int)strlen(*value);
-    counted(s, &length, 0);
+    counted(s, &length, 0, 1);
     char* to = s->reading ? ax_calloc((size_t)length + 1, 1) : (char*)*value;
     raw(s, to, (size_t)length);
     *value = to;
@@ -111,15 +113,15 @@ static void shape(stream* s, ax_curve_shape* curve)
     CHOICE(s, curve->kind, AX_CURVE_SPLINE);
     flag(s, &curve->closed);
     REAL(s, curve->fillet);
-    counted(s, &curve->count, 0);
+    counted(s, &curve->count, 0, sizeof *curve->points);
     ARRAY(s, curve->points, curve->count);
     reals(s, *curve->points, s->bad ? 0 : 3 * (size_t)curve->count);
 }
 
 static void mesh(stream* s, ax_mesh* m)
 {
-    counted(s, &m->vertex_count, 0);
-    counted(s, &m->face_count, 0);
+    counted(s, &m->vertex_count, 0, sizeof *m->positions);
+    counted(s, &m->face_count, 0, sizeof *m->faces);
     ARRAY(s, m->positions, m->vertex_count);
     reals(s, *m->positions, s->bad ? 0 : 3 * (size_t)m->vertex_count);
     ARRAY(s, m->faces, m->face_count);
@@ -136,10 +138,10 @@ static void rising(stream* s, const int* start, int count)
 
 static void linkage(stream* s, ax_linkage* l)
 {
-    counted(s, &l->triangle_count, 1);
-    counted(s, &l->hinge_count, 1);
-    counted(s, &l->hole_count, 0);
-    counted(s, &l->opening_count, 0);
+    counted(s, &l->triangle_count, 1, sizeof *l->triangles);
+    counted(s, &l->hinge_count, 1, sizeof *l->on_rim);
+    counted(s, &l->hole_count, 0, sizeof *l->hole_start);
+    counted(s, &l->opening_count, 0, sizeof *l->opening_start);
     ARRAY(s, l->triangles, l->triangle_count);
     ARRAY(s, l->panels, l->triangle_count);
     ARRAY(s, l->hole_start, l->hole_count + 1);
@@ -158,7 +160,7 @@ static void linkage(stream* s, ax_linkage* l)
 static void rim_part(stream* s, ax_rim_part* part)
 {
     CHOICE(s, part->kind, AX_RIM_SLIDE);
-    counted(s, &part->count, 0);
+    counted(s, &part->count, 0, sizeof *part->hinges);
     ARRAY(s, part->hinges, part->count);
     if (part->kind == AX_RIM_FIXED) {
         ARRAY(s, part->places, part->count);
@@ -172,7 +174,7 @@ static void constraint(stream* s, ax_form_constraint* c)
 {
     text(s, &c->name);
     CHOICE(s, c->kind, AX_HELD_FAIR);
-    counted(s, &c->count, 0);
+    counted(s, &c->count, 0, sizeof *c->hinges);
     ARRAY(s, c->hinges, c->count);
     REAL(s, c->weight);
     REAL(s, c->point);
@@ -249,7 +251,7 @@ static void body(stream* s, ax_form* f)
     size_t n = (size_t)f->lattice.linkage.hinge_count, t = (size_t)f->lattice.linkage.triangle_count;
     state(s, f->prescribed, t * sizeof *f->prescribed);
     state(s, f->stretch, t * sizeof *f->stretch);
-    counted(s, &f->outline_count, 0);
+    counted(s, &f->outline_count, 0, sizeof *f->outline);
     ARRAY(s, f->outline, f->outline_count);
     reals(s, *f->outline, s->bad ? 0 : 2 * (size_t)f->outline_count);
     REAL(s, f->mouth_min);
@@ -279,26 +281,26 @@ static void body(stream* s, ax_form* f)
     FIELD(s, f->revision);
     FIELD(s, f->iterations);
 
-    counted(s, &f->rim_count, 0);
+    counted(s, &f->rim_count, 0, RIM_PART);
     if (s->reading)
         f->rim = AX_NEW0(ax_rim_part, f->rim_count + 1);
     for (int k = 0; k < f->rim_count && !s->bad; ++k)
         rim_part(s, f->rim + k);
-    counted(s, &f->held_count, 0);
+    counted(s, &f->held_count, 0, CONSTRAINT);
     if (s->reading)
         f->held = AX_NEW0(ax_form_constraint, f->held_count + 1);
     for (int k = 0; k < f->held_count && !s->bad; ++k)
         constraint(s, f->held + k);
-    counted(s, &f->set_count, 0);
+    counted(s, &f->set_count, 0, SET);
     if (s->reading)
         f->sets = AX_NEW0(ax_named_set, f->set_count + 1);
     for (int k = 0; k < f->set_count && !s->bad; ++k) {
         text(s, (const char**)&f->sets[k].name);
-        counted(s, &f->sets[k].count, 0);
+        counted(s, &f->sets[k].count, 0, sizeof *f->sets[k].hinges);
         ARRAY(s, f->sets[k].hinges, f->sets[k].count);
         indices(s, f->sets[k].hinges, s->bad ? 0 : f->sets[k].count, f->lattice.linkage.hinge_count);
     }
-    counted(s, &f->underlay_count, 0);
+    counted(s, &f->underlay_count, 0, UNDERLAY);
     if (s->reading) {
         f->underlay_names = AX_NEW0(const char*, f->underlay_count + 1);
         f->underlays = AX_NEW0(ax_mesh, f->underlay_count + 1);
