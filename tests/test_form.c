@@ -770,6 +770,12 @@ static void unusable_requests_are_refused(void** state)
     assert_int_equal(ax_form_set_rim(form, 1, &part, &error), AX_USAGE);
     part.count = 1, part.hinges = beyond;
     assert_int_equal(ax_form_set_rim(form, 1, &part, &error), AX_USAGE);
+    double circle[3][3] = {{0, 0, 0}, {0, 0, 1}, {-1, 0, 0}};
+    part.kind = AX_RIM_SLIDE, part.hinges = twice;
+    part.curve =
+        (ax_curve_shape){.kind = AX_CURVE_CIRCLE, .closed = true, .count = 3, .points = (const double(*)[3])circle};
+    assert_int_equal(ax_form_set_rim(form, 1, &part, &error), AX_USAGE);
+    assert_non_null(strstr(error.message, "radius"));
     ax_form_constraint c = {.name = "", .kind = AX_HELD_PLANE, .count = 2, .hinges = twice, .weight = 1};
     assert_int_equal(ax_form_put_constraint(form, &c, &error), AX_USAGE);
     c.name = "two";

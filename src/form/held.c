@@ -98,6 +98,8 @@ static ax_status check_shape(const ax_curve_shape* shape, ax_error* error)
         for (int c = 0; c < 3; ++c)
             if (!isfinite(shape->points[p][c]))
                 return ax_fail(error, AX_USAGE, "Point %d of the %s is no number.", p, name);
+    if (shape->kind == AX_CURVE_CIRCLE && shape->points[2][0] < 0)
+        return ax_fail(error, AX_USAGE, "The radius of a circle is %g; it must not be below 0.", shape->points[2][0]);
     return AX_OK;
 }
 
