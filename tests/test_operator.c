@@ -1,6 +1,7 @@
 // Operators: each changes what it says it changes, and its figures come out as the mathematics has them.
 #include "ax/recipe.h"
 
+#include "analysis/measure.h"
 #include "base/random.h"
 #include "base/vec.h"
 #include "form/state.h"
@@ -1568,6 +1569,35 @@ static void results_do_not_depend_on_resolution(void** state)
     }
 }
 
+// A stroke that turns the sheet far in a rim that is nearly round leaves less than a hundredth of an edge.
+static void a_sheet_that_a_stroke_turns_rests(void** state)
+{
+    (void)state;
+    static const char recipe[] =
+        "{\"op\": \"start_circle\", \"radius\": 1, \"triangles\": %d, \"scale\": 1.25}, {\"op\": \"paint\", "
+        "\"points\": [[-0.35, 0], [0.35, 0.1]], \"radius\": 0.6, \"value\": 1.7}, {\"op\": \"smooth\", "
+        "\"amount\": 0.15}, {\"op\": \"rim_ellipse\", \"a\": [1.15, 0, 0], \"b\": [0, 1.05, 0]}, "
+        "{\"op\": \"inflation\"}";
+    static const char stroke[] = "{\"op\": \"paint\", \"points\": [[0.4, 0.4]], \"radius\": 0.35, \"value\": 1.5}";
+    char text[600];
+    snprintf(text, sizeof text, recipe, getenv("AX_QUICK") ? 300 : 2000);
+    ax_form* form = play(text);
+    size_t n = (size_t)form->lattice.linkage.hinge_count;
+    double(*before)[3] = ax_copy(form->deployed, n, sizeof *before), (*rest)[3] = ax_alloc(n, sizeof *rest);
+    ax_error error;
+    assert_int_equal(ax_operator_preview(stroke, ".", &form, &error), AX_OK);
+    assert_int_equal(ax_form_settle(form, 0, NULL, &error), AX_OK);
+    assert_true(fabs(ax_measure_turn((int)n, (const double(*)[3])before, (const double(*)[3])form->deployed)) > 0.02);
+    memcpy(rest, form->deployed, n * sizeof *rest);
+    for (int again = 0; again < 5; ++again)
+        assert_int_equal(ax_form_settle(form, 0, NULL, &error), AX_OK);
+    double edge = form->lattice.spacing / 2; // of the smallest panel
+    assert_at_most(ax_measure_move((int)n, (const double(*)[3])rest, (const double(*)[3])form->deployed), 0.005 * edge);
+    ax_free(before);
+    ax_free(rest);
+    ax_form_free(form);
+}
+
 // Sides, outlines and arcs: the ends of a part, and rims where no fine hinge is nearest to a coarse one, included.
 static void a_coarser_sheet_is_held_as_one_of_600_panels_is(void** state)
 {
@@ -1770,6 +1800,7 @@ int main(void)
         cmocka_unit_test(stretched_sheets_open_alike_in_all_directions),
         cmocka_unit_test(forms_of_several_shapes_are_told),
         cmocka_unit_test(what_holds_a_fine_sheet_is_kept_from_its_start),
+        cmocka_unit_test(a_sheet_that_a_stroke_turns_rests),
         cmocka_unit_test(a_coarser_sheet_is_held_as_one_of_600_panels_is),
         cmocka_unit_test(a_sheet_takes_a_coarser_one_along),
         cmocka_unit_test(results_do_not_depend_on_resolution),

@@ -26,10 +26,14 @@ enum {
     STALLED = 450      // iterations without better edges: they cannot be right
 };
 static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 2e-3, good_error = 5e-3, balance_error = 0.03;
-static const double block_step = 1e-4;  // in lattice spacings
-static const double turn_step = 1e-5;   // the same, on the sheet's radius
-static const double calm_step = 2e-6;   // too slow to matter, and as slow as the rest comes to rest
-static const double widest_turn = 0.1;  // radians, at once
+static const double block_step = 1e-4; // in lattice spacings
+static const double turn_step = 1e-5;  // the same, on the sheet's radius
+static const double calm_step = 2e-6;  // too slow to matter, and as slow as the rest comes to rest
+static const double widest_turn = 0.1; // radians, at once
+static const double early_turn =
+    0.02; // the same: such a turn stirs up so much that it is taken while the shape is still found
+static const double early_step = 3e-3;  // in lattice spacings, by then
+static const double steady = 0.1;       // of its rate, by which the rate of a turn changes in a block
 static const double coarse_share = 0.3; // of the time, where a coarser sheet settles first
 static const double first_share = 0.8;  // of what is left, where a fresh sheet may have to rest twice
 static const double far_move = 0.08;    // of the sheet's radius, by a stroke
@@ -149,15 +153,32 @@ static void put_shape(ax_form* f, const double* z)
     ax_solver_set_multipliers(f->shape, z + 5 * n);
 }
 
+// Nothing but the slope of a rim keeps it from turning.
+static bool may_turn(const ax_form* f)
+{
+    for (int k = 0; k < f->rim_count; ++k)
+        if (f->rim[k].kind == AX_RIM_FIXED)
+            return false;
+    return f->held_count == 0;
+}
+
+// Of the rate at which the last block turned it, how far that is likely to go.
+static double whole_turn(double rate)
+{
+    return ax_clamp(FIRST_TURN * rate, -widest_turn, widest_turn);
+}
+
 // Both states of the shape. Edges are right after one or two hundred iterations; a few slow modes are left, of which a block of iterations
-// keeps nine tenths: the limit of some states a block apart takes them away at once. False if cancelled.
+// keeps nine tenths: the limit of some states a block apart takes them away at once. A turn in the rim, which would go on for long, is made as
+// soon as it is steady. False if cancelled.
 static bool shape_sheet(ax_form* f, const ax_progress* progress, double hi)
 {
     size_t n = (size_t)f->lattice.linkage.hinge_count;
     ax_extrapolation* states = ax_extrapolation_make(shape_size(f), STATES);
     double(*was)[3] = ax_copy(f->deployed, n, sizeof *was), before = INFINITY, best = INFINITY;
+    double rate = 0;
     int bettered = 0;
-    bool going = true, jumped = false;
+    bool going = true, jumped = false, turns = may_turn(f);
     for (int done = 0, blocks = 0; done < MOST_ITERATIONS && going; done += BLOCK) {
         ax_form_iterate_shape(f, BLOCK);
         f->iterations += BLOCK;
@@ -170,6 +191,16 @@ static bool shape_sheet(ax_form* f, const ax_progress* progress, double hi)
         if ((off < rest_error && moved < block_step) ||
             (done >= SHAPE_ITERATIONS && (off < good_error || done - bettered >= STALLED)))
             break;
+        double turned = ax_measure_turn((int)n, (const double(*)[3])was, (const double(*)[3])f->deployed);
+        if (turns && !jumped && moved < early_step && fabs(whole_turn(turned)) > early_turn &&
+            fabs(turned - rate) < steady * fabs(turned)) {
+            ax_measure_turned((int)n, (const double(*)[3])f->deployed, whole_turn(turned), f->deployed);
+            ax_measure_turned((int)n, (const double(*)[3])f->simulated, whole_turn(turned), f->simulated);
+            ax_extrapolation_clear(states);
+            blocks = 0;
+            turns = false; // the rest of it at the end
+        }
+        rate = turned;
         if (jumped && moved > astray * before)
             put_shape(f, ax_extrapolation_last(states));
         jumped = false;
@@ -216,7 +247,7 @@ static bool end_turn(ax_form* f, const ax_progress* progress, double gone)
     double(*from)[3] = ax_copy(f->deployed, (size_t)n, sizeof *from), *best = AX_NEW(double, shape_size(f));
     double size = f->lattice.spacing / f->radius, rate, angle = 0;
     bool going = turn_of_blocks(f, 1, progress, gone, &rate), drawn = true;
-    double turn = ax_clamp(FIRST_TURN * rate, -widest_turn, widest_turn), slowest = fabs(rate);
+    double turn = whole_turn(rate), slowest = fabs(rate);
     take_shape(f, best);
     for (int k = 0; k < TURNS && going && drawn && fabs(rate) > turn_step * size; ++k) {
         ax_measure_turned(n, (const double(*)[3])f->deployed, turn, f->deployed);

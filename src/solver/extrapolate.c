@@ -43,6 +43,11 @@ double* ax_extrapolation_next(ax_extrapolation* e)
     return e->states[e->kept++];
 }
 
+void ax_extrapolation_clear(ax_extrapolation* e)
+{
+    e->kept = 0;
+}
+
 const double* ax_extrapolation_last(const ax_extrapolation* e)
 {
     assert(e->kept > 0);

@@ -15,6 +15,7 @@ void ax_extrapolation_free(ax_extrapolation* e); // NULL is ignored
 
 // Room for the next state, to be filled by the caller; all earlier ones are dropped if there are `most`.
 double* ax_extrapolation_next(ax_extrapolation* e);
+void ax_extrapolation_clear(ax_extrapolation* e); // drops all states
 // The state that was filled last, if there is one.
 const double* ax_extrapolation_last(const ax_extrapolation* e);
 // The limit of the states kept, `size` numbers, valid until the next call; NULL if there are fewer than `most` or they show none.
