@@ -26,12 +26,11 @@ enum {
     STALLED = 450      // iterations without better edges: they cannot be right
 };
 static const double rest_error = 1e-4, rest_step = 1e-5, near_error = 2e-3, good_error = 5e-3, balance_error = 0.03;
-static const double block_step = 1e-4; // in lattice spacings
-static const double turn_step = 1e-5;  // the same, on the sheet's radius
-static const double calm_step = 2e-6;  // too slow to matter, and as slow as the rest comes to rest
-static const double widest_turn = 0.1; // radians, at once
-static const double early_turn =
-    0.02; // the same: such a turn stirs up so much that it is taken while the shape is still found
+static const double block_step = 1e-4;  // in lattice spacings
+static const double turn_step = 1e-5;   // the same, on the sheet's radius
+static const double calm_step = 2e-6;   // too slow to matter, and as slow as the rest comes to rest
+static const double widest_turn = 0.1;  // radians, at once
+static const double early_turn = 0.02;  // the same: stirs up so much that it is made while the shape is still found
 static const double early_step = 3e-3;  // in lattice spacings, by then
 static const double steady = 0.1;       // of its rate, by which the rate of a turn changes in a block
 static const double coarse_share = 0.3; // of the time, where a coarser sheet settles first
