@@ -75,9 +75,9 @@ int LLVMFuzzerInitialize(int* argc, char*** argv)
     ax_form_set_dynamics(form, &dynamics);
     ax_form_iterate(form, 5);
     originals[0] = put_away(form);
-    bool kept;
+    bool nested;
     promise(ax_form_make(&(ax_form_start){4, outline, 950, 0, 1.2, 0, false, AX_METRE}, &form, NULL) == AX_OK);
-    promise(ax_form_nest(form, NULL, &kept) && kept);
+    promise(ax_form_nest(form, NULL, &nested) && nested);
     originals[1] = put_away(form);
     promise(originals[1].inner_size > 0);
     return 0;

@@ -152,7 +152,7 @@ static void put_shape(ax_form* f, const double* z)
     ax_solver_set_multipliers(f->shape, z + 5 * n);
 }
 
-// Nothing but the slope of a rim keeps it from turning.
+// Whether nothing but the slope of its rim keeps the sheet from turning: then it may go far, at a steady rate.
 static bool may_turn(const ax_form* f)
 {
     for (int k = 0; k < f->rim_count; ++k)
@@ -190,9 +190,9 @@ static bool shape_sheet(ax_form* f, const ax_progress* progress, double hi)
         if ((off < rest_error && moved < block_step) ||
             (done >= SHAPE_ITERATIONS && (off < good_error || done - bettered >= STALLED)))
             break;
-        double turned = ax_measure_turn((int)n, (const double(*)[3])was, (const double(*)[3])f->deployed);
-        if (turns && !jumped && moved < early_step && fabs(whole_turn(turned)) > early_turn &&
-            fabs(turned - rate) < steady * fabs(turned)) {
+        double turned = turns ? ax_measure_turn((int)n, (const double(*)[3])was, (const double(*)[3])f->deployed) : 0;
+        bool steadily = fabs(turned - rate) < steady * fabs(turned);
+        if (turns && steadily && !jumped && moved < early_step && fabs(whole_turn(turned)) > early_turn) {
             ax_measure_turned((int)n, (const double(*)[3])f->deployed, whole_turn(turned), f->deployed);
             ax_measure_turned((int)n, (const double(*)[3])f->simulated, whole_turn(turned), f->simulated);
             ax_extrapolation_clear(states);
